@@ -1,43 +1,43 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
 #include "downwash/controllers/reference_point.hpp"
 
 namespace downwash {
 
-/// Where the level vehicle and its arm are, or are asked to be: a place in the plane of motion [m] and the angle of the
-/// arm relative to the multirotor [rad], unwrapped.
+/// Where the level vehicle and its arm are, or are asked to be: one number for each axis [m or rad]. Angles are
+/// unwrapped; those of the arm are relative to the multirotor.
 struct Configuration {
-    double x_m = 0;
-    double z_m = 0;
-    double arm_rad = 0;
+    std::array<double, max_axes> coordinate{};
+
+    [[nodiscard]] constexpr double& operator[](std::size_t axis) noexcept { return coordinate[axis]; }
+    [[nodiscard]] constexpr double operator[](std::size_t axis) const noexcept { return coordinate[axis]; }
 
     friend bool operator==(const Configuration&, const Configuration&) = default;
 };
 
-/// The reference at rest there.
+/// The reference that rests at a configuration.
 [[nodiscard]] inline ReferencePoint at_rest(const Configuration& configuration) noexcept {
     ReferencePoint point;
-    point.position[0] = configuration.x_m;
-    point.position[1] = configuration.z_m;
-    point.position[2] = configuration.arm_rad;
+    std::copy_n(configuration.coordinate.begin(), max_axes, point.position);
     return point;
 }
 
-/// Whether nothing moves: neither speed nor acceleration.
-[[nodiscard]] inline bool is_at_rest(const ReferencePoint& point) noexcept {
-    ReferencePoint still;
-    std::copy_n(point.position, 3, still.position);
-    return point == still;
-}
-
-/// Where a reference is.
+/// The configuration of a reference point.
 [[nodiscard]] inline Configuration configuration_of(const ReferencePoint& point) noexcept {
-    return {point.position[0], point.position[1], point.position[2]};
+    Configuration configuration;
+    std::copy_n(point.position, max_axes, configuration.coordinate.begin());
+    return configuration;
 }
 
-/// Where a vehicle with q = (x, z, pitch, arm) [m, m, rad, rad] is.
+/// Whether a reference point neither moves nor accelerates.
+[[nodiscard]] inline bool is_at_rest(const ReferencePoint& point) noexcept {
+    return point == at_rest(configuration_of(point));
+}
+
+/// The configuration of a planar vehicle with q = (x, z, pitch, arm) [m, m, rad, rad].
 [[nodiscard]] inline Configuration configuration_of(const double (&q)[4]) noexcept {
     return {q[0], q[1], q[3]};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "downwash/controllers/configuration.hpp"
@@ -8,10 +9,11 @@
 
 namespace downwash {
 
-/// A timed reference of (x, z, arm).
+/// A timed reference.
 struct Plan {
-    std::vector<ReferenceKnot> reference;  ///< the first at tick 0
-    double tick_s = 0;                     ///< length of a control tick
+    std::vector<ReferenceKnot> reference;      ///< the first at tick 0
+    double tick_s = 0;                         ///< length of a control tick
+    std::span<const Axis> axes = planar_axes;  ///< of its knots, static
 
     [[nodiscard]] double duration_s() const {
         return reference.empty() ? 0 : static_cast<double>(reference.back().tick) * tick_s;

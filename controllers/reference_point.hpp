@@ -1,20 +1,21 @@
 #pragma once
 
+#include "downwash/controllers/axes.hpp"
+
 namespace downwash {
 
-/// Where the vehicle and the arm should be at one instant: (x, z, arm) with first and second time derivatives
-/// [m, m, rad; per s; per s2], plane coordinates, the arm angle relative to the multirotor and unwrapped. One template
-/// over the lane type.
+/// Where vehicle and arm should be at one instant: the coordinate of each axis [m or rad] with its first and second
+/// time derivative. Angles are unwrapped. One template over the lane type.
 template <class T>
 struct BasicReferencePoint {
-    T position[3]{};
-    T velocity[3]{};
-    T acceleration[3]{};
+    T position[max_axes]{};
+    T velocity[max_axes]{};
+    T acceleration[max_axes]{};
 
     friend bool operator==(const BasicReferencePoint&, const BasicReferencePoint&) = default;
 };
 
-/// That of one vehicle.
+/// The reference point of a single vehicle.
 using ReferencePoint = BasicReferencePoint<double>;
 
 }  // namespace downwash

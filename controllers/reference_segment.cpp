@@ -98,7 +98,7 @@ ReferenceSegment::ReferenceSegment(const ReferencePoint& from, const ReferencePo
       inverse_duration_1_s_(1 / duration_s_) {
     assert(ticks >= 1 && tick_s > 0);
     const double t = duration_s_;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
         // Hermite conditions at both ends, in the powers of the normalised time (Taylor terms p, v T, a T^2 / 2).
         const double p = from.position[axis];
         const double v0 = from.velocity[axis] * t;
@@ -125,7 +125,7 @@ ReferencePoint ReferenceSegment::at_tick(std::int64_t tick) const noexcept {
     }
     const double s = static_cast<double>(tick) * tick_s_ * inverse_duration_1_s_;
     ReferencePoint point;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
         const auto at = controllers::quintic_at(coefficient_[axis], s, inverse_duration_1_s_);
         point.position[axis] = at.position;
         point.velocity[axis] = at.velocity;

@@ -8,7 +8,7 @@
 
 namespace downwash {
 
-/// Limits of a reference: Euclidean in (x, z), apart for the arm; all > 0.
+/// Limits of a reference: Euclidean over the translations, apart for every joint; all > 0.
 struct MotionLimits {
     double max_speed_m_s = 1.0;
     double max_acceleration_m_s2 = 0.5;
@@ -23,6 +23,16 @@ struct MotionLimits {
     std::optional<double> max_pitch_rate_rad_s;
 };
 
+/// The greatest rate of an axis [m/s or rad/s].
+[[nodiscard]] inline double max_rate(const MotionLimits& limits, AxisGroup group) noexcept {
+    return group == AxisGroup::translation ? limits.max_speed_m_s : limits.max_arm_rate_rad_s;
+}
+
+/// The greatest acceleration of an axis [m/s2 or rad/s2].
+[[nodiscard]] inline double max_acceleration(const MotionLimits& limits, AxisGroup group) noexcept {
+    return group == AxisGroup::translation ? limits.max_acceleration_m_s2 : limits.max_arm_acceleration_rad_s2;
+}
+
 /// The pitch at which a multirotor that is nothing but a point mass follows a reference [rad]: the direction of a + g.
 [[nodiscard]] DOWNWASH_EXPORT double pitch_along(const ReferencePoint& point) noexcept;
 
@@ -35,7 +45,7 @@ struct MotionLimits {
 [[nodiscard]] DOWNWASH_EXPORT MotionLimits limits_in_every_direction(const MotionLimits& limits) noexcept;
 
 /// One piece of a reference: the quintic Hermite polynomial between two points, a whole number of control ticks long.
-/// Between two points at rest it is the straight line of (x, z, arm), synchronised, s(t) = 10 t^3 - 15 t^4 + 6 t^5.
+/// Between two points at rest it is the straight line, all axes together, s(t) = 10 t^3 - 15 t^4 + 6 t^5.
 class DOWNWASH_EXPORT ReferenceSegment {
  public:
     /// @param ticks length in control ticks, >= 1   @param tick_s length of a tick [s], > 0
@@ -60,8 +70,8 @@ class DOWNWASH_EXPORT ReferenceSegment {
     /// @param point at_tick(tick)
     [[nodiscard]] double pitch_rate_rad_s(std::int64_t tick, const ReferencePoint& point) const noexcept;
 
-    /// Of the powers of the time over the duration, (x, z, arm); see quintic_at().
-    [[nodiscard]] const double (&coefficients() const noexcept)[3][6] { return coefficient_; }
+    /// The coefficients of the powers of the time over the duration, per axis; see quintic_at().
+    [[nodiscard]] const double (&coefficients() const noexcept)[max_axes][6] { return coefficient_; }
     [[nodiscard]] double inverse_duration_1_s() const noexcept { return inverse_duration_1_s_; }
 
  private:
@@ -71,7 +81,7 @@ class DOWNWASH_EXPORT ReferenceSegment {
     double tick_s_;
     double duration_s_;
     double inverse_duration_1_s_;
-    double coefficient_[3][6];  // of the powers of t / duration, per axis
+    double coefficient_[max_axes][6];  // of the powers of t / duration, per axis
 };
 
 /// A point that a reference passes at a control tick, counted from the start of the flight. Neighbouring knots span a

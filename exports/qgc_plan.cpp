@@ -99,12 +99,12 @@ class Corners {
     [[nodiscard]] double bulge_m(double from_s, double to_s) const {
         constexpr int samples = 16;
         const Configuration from = at(from_s), to = at(to_s);
-        const double along_x = to.x_m - from.x_m, along_z = to.z_m - from.z_m;
+        const double along_x = to[plane::x] - from[plane::x], along_z = to[plane::z] - from[plane::z];
         const double length_2 = along_x * along_x + along_z * along_z;
         double most_m = 0;
         for (int i = 1; i < samples; ++i) {
             const Configuration here = at(from_s + (to_s - from_s) * i / samples);
-            const double dx = here.x_m - from.x_m, dz = here.z_m - from.z_m;
+            const double dx = here[plane::x] - from[plane::x], dz = here[plane::z] - from[plane::z];
             const double share = length_2 > 0 ? std::clamp((dx * along_x + dz * along_z) / length_2, 0., 1.) : 0;
             most_m = std::max(most_m, std::hypot(dx - share * along_x, dz - share * along_z));
         }
@@ -124,7 +124,7 @@ std::vector<Corner> corners_of(const RunRecord& run) {
         const Configuration begin = configuration_of(from.point), end = configuration_of(to.point);
         const double from_s = static_cast<double>(from.tick) * plan.tick_s;
         const double to_s = static_cast<double>(to.tick) * plan.tick_s;
-        if (begin.x_m == end.x_m && begin.z_m == end.z_m) {
+        if (begin[plane::x] == end[plane::x] && begin[plane::z] == end[plane::z]) {
             way.corners.back().hold_s += to_s - from_s;
         } else {
             way.add_way(from_s, to_s);
@@ -146,7 +146,7 @@ std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
     const double bearing_deg = earth.bearing_deg(run.problem.plane.heading_rad());
     Json items = Json::array();
     for (const Corner& corner : corners) {
-        const Vector3 world_m = run.problem.plane.to_world(corner.at.x_m, 0, corner.at.z_m);
+        const Vector3 world_m = run.problem.plane.to_world(corner.at[plane::x], 0, corner.at[plane::z]);
         const Geodetic place = earth.at(world_m);
         const double above_home_m = place.altitude_m - settings.origin->altitude_m;
         const auto add = [&](int command, double hold_s, double acceptance_radius_m) {

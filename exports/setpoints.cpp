@@ -15,7 +15,7 @@ constexpr double max_setpoints = 1e6;
 constexpr double max_rate_hz = 10000;
 
 Vector3 in_world(const PlaneOfMotion& plane, const double vector[3]) {
-    return {vector[0] * plane.cos_heading(), vector[0] * plane.sin_heading(), vector[1]};
+    return {vector[plane::x] * plane.cos_heading(), vector[plane::x] * plane.sin_heading(), vector[plane::z]};
 }
 
 }  // namespace
@@ -33,7 +33,7 @@ ReferencePoint reference_at(const Plan& plan, double t_s) {
     }
     const ReferenceSegment segment(from.point, to->point, to->tick - from.tick, plan.tick_s);
     ReferencePoint point;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
         const auto at = controllers::quintic_at(segment.coefficients()[axis],
                                                 (t_s - begin_s(from)) * segment.inverse_duration_1_s(),
                                                 segment.inverse_duration_1_s());

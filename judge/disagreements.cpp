@@ -23,14 +23,11 @@ bool is_same(double a, double b) {
 class List {
  public:
     void compare(const std::string& what, const Configuration& file, const Configuration& judge) {
-        const auto add = [&](const char* name, double of_file, double of_judge) {
-            if (!is_same(of_file, of_judge)) {
-                found.push_back({what + name, of_file, of_judge});
+        for (std::size_t i = 0; i < planar_axes.size(); ++i) {
+            if (!is_same(file[i], judge[i])) {
+                found.push_back({what + '.' + std::string(planar_axes[i].position), file[i], judge[i]});
             }
-        };
-        add(".x_m", file.x_m, judge.x_m);
-        add(".z_m", file.z_m, judge.z_m);
-        add(".arm_rad", file.arm_rad, judge.arm_rad);
+        }
     }
     /// @param limit that the file should not exceed
     void limit(const std::string& what, double file, double limit) {

@@ -45,14 +45,14 @@ Configuration rest_of(const ReferencePoint& from, const MotionLimits& limits, co
 }
 
 bool is_inside(const Bounds& bounds, const Configuration& at) {
-    return at.x_m >= bounds.x_low_m && at.x_m <= bounds.x_high_m && at.z_m >= bounds.z_low_m &&
-           at.z_m <= bounds.z_high_m;
+    return at[plane::x] >= bounds.x_low_m && at[plane::x] <= bounds.x_high_m && at[plane::z] >= bounds.z_low_m &&
+           at[plane::z] <= bounds.z_high_m;
 }
 
 /// A hover there: it may be a little beside it, but has to come to rest.
 Goal hover_at(const Configuration& rest) {
     Goal goal;
-    goal.configuration = ConfigurationGoal{rest.x_m, rest.z_m, rest.arm_rad, 0.3, 0.35};
+    goal.configuration = ConfigurationGoal{rest[plane::x], rest[plane::z], rest[plane::arm], 0.3, 0.35};
     goal.hold_s = stop_hold_s;
     return goal;
 }
@@ -84,8 +84,8 @@ Bounds Braking::places_on(std::span<const Try> tries, const Start& from) const {
     Bounds places{from.x_m, from.x_m, from.z_m, from.z_m};
     for (const Try& each : tries) {
         const Configuration rest = each.plan.last();
-        places = {std::min(places.x_low_m, rest.x_m), std::max(places.x_high_m, rest.x_m),
-                  std::min(places.z_low_m, rest.z_m), std::max(places.z_high_m, rest.z_m)};
+        places = {std::min(places.x_low_m, rest[plane::x]), std::max(places.x_high_m, rest[plane::x]),
+                  std::min(places.z_low_m, rest[plane::z]), std::max(places.z_high_m, rest[plane::z])};
     }
     constexpr double swing_m = 0.3;
     const Bounds& bounds = problem_.bounds;  // rests are within them, wherever the vehicle is
@@ -113,8 +113,7 @@ std::vector<Braking::Try> Braking::all_tries(const ReferencePoint& from) const {
 /// Ways to places without the margin, unless all are.
 void Braking::leave_out_near_rests(std::vector<Try>& tries, double margin_m) const {
     const auto is_near = [&](const Try& each) {
-        const Configuration rest = each.plan.last();
-        return model_->collisions().clearance_m({rest.x_m, rest.z_m, 0, rest.arm_rad}) < margin_m;
+        return model_->collisions().clearance_m(level_at(each.plan.last())) < margin_m;
     };
     if (!std::ranges::all_of(tries, is_near)) {
         std::erase_if(tries, is_near);

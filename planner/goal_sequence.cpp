@@ -22,11 +22,7 @@ Problem part_of(const Problem& problem, const Goal& goal, const Course& before) 
     part.stops.clear();
     part.goal = goal;
     if (!before.plan.reference.empty()) {
-        const Configuration end = before.plan.last();
-        part.start = {};
-        part.start.x_m = end.x_m;
-        part.start.z_m = end.z_m;
-        part.start.arm_rad = end.arm_rad;
+        part.start = Start::resting_at(before.plan.last());
     }
     return part;
 }

@@ -178,10 +178,7 @@ bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget,
     Place& place = places_[to];
     Problem part = problem_to(problem_, place.goal);
     if (from != estimates_.outside()) {
-        part.start = {};
-        part.start.x_m = places_[from].at.x_m;
-        part.start.z_m = places_[from].at.z_m;
-        part.start.arm_rad = places_[from].at.arm_rad;
+        part.start = Start::resting_at(places_[from].at);
     }
     const std::size_t legs = legs_.size();
     part.planner.seed += static_cast<std::uint32_t>((pass_ + static_cast<std::uint32_t>(state.failures)) * legs +

@@ -57,7 +57,7 @@ bool is_finite(const Start& start) {
     double sum = start.x_m + start.z_m + start.arm_rad + start.pitch_rad + start.vx_m_s + start.vz_m_s +
                  start.pitch_rate_rad_s + start.arm_rate_rad_s;
     if (start.reference) {
-        for (int axis = 0; axis < 3; ++axis) {
+        for (std::size_t axis = 0; axis < max_axes; ++axis) {
             sum +=
                 start.reference->position[axis] + start.reference->velocity[axis] + start.reference->acceleration[axis];
         }

@@ -77,8 +77,8 @@ std::vector<double> angles_within(double middle_rad, double tolerance_rad, const
 }
 
 bool is_within(const Bounds& bounds, const Configuration& at) {
-    return at.x_m >= bounds.x_low_m - rounding_m && at.x_m <= bounds.x_high_m + rounding_m &&
-           at.z_m >= bounds.z_low_m - rounding_m && at.z_m <= bounds.z_high_m + rounding_m;
+    return at[plane::x] >= bounds.x_low_m - rounding_m && at[plane::x] <= bounds.x_high_m + rounding_m &&
+           at[plane::z] >= bounds.z_low_m - rounding_m && at[plane::z] <= bounds.z_high_m + rounding_m;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,6 +47,15 @@ struct Start {
 
     /// Where vehicle and arm are, the pitch left out.
     [[nodiscard]] Configuration configuration() const noexcept { return {x_m, z_m, arm_rad}; }
+
+    /// A vehicle that rests at a configuration.
+    [[nodiscard]] static Start resting_at(const Configuration& at) {
+        Start start;
+        start.x_m = at[plane::x];
+        start.z_m = at[plane::z];
+        start.arm_rad = at[plane::arm];
+        return start;
+    }
 };
 
 /// Whether nothing moves at the start, and a vehicle may have hovered there for long: none that is in a flight already.
@@ -99,6 +109,9 @@ struct Problem {
         energy_budget_j;  ///< no flight may take more, > 0; targets that it does not allow are left out
     MotionLimits motion;
     PlannerSettings planner;
+
+    /// The axes of the vehicle's references.
+    [[nodiscard]] static constexpr std::span<const Axis> axes() noexcept { return planar_axes; }
 };
 
 /// More goals than these, in a row or to choose from, are not planned for.

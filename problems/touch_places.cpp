@@ -214,7 +214,7 @@ class TouchSearch {
         const PlantModel plant = make_plant_model(problem_.robot.multirotor, problem_.robot.arm, problem_.robot.rotors);
         Configuration waiting = problem_.start.configuration();
         if (goal.end_effector) {
-            waiting.arm_rad = way.arm_rad;
+            waiting[plane::arm] = way.arm_rad;
         }
         waiting = placed_at(goal, plant, waiting, 0, 0);
         constexpr double air_m = 5e-4;
@@ -223,8 +223,8 @@ class TouchSearch {
         touching.x_m += ahead_m * way.direction.x;
         touching.z_m += ahead_m * way.direction.z;
         const Bounds& b = problem_.bounds;
-        if (waiting.x_m < b.x_low_m || waiting.x_m > b.x_high_m || waiting.z_m < b.z_low_m ||
-            waiting.z_m > b.z_high_m) {
+        if (waiting[plane::x] < b.x_low_m || waiting[plane::x] > b.x_high_m || waiting[plane::z] < b.z_low_m ||
+            waiting[plane::z] > b.z_high_m) {
             return note(Flaw::outside);
         }
         const auto& collisions = check_.collisions();

@@ -16,21 +16,19 @@ py::dict columns_of(NumberTable table) {
 
 NumberTable knot_table(const Plan& plan) {
     NumberTable table;
-    table.names = {"t_s",
-                   "x_m",
-                   "z_m",
-                   "arm_rad",
-                   "vx_m_s",
-                   "vz_m_s",
-                   "arm_rate_rad_s",
-                   "ax_m_s2",
-                   "az_m_s2",
-                   "arm_acceleration_rad_s2"};
+    table.names = {"t_s"};
+    for (const auto name : {&Axis::position, &Axis::velocity, &Axis::acceleration}) {
+        for (const Axis& axis : plan.axes) {
+            table.names.emplace_back(axis.*name);
+        }
+    }
     table.columns.resize(table.names.size());
     for (const ReferenceKnot& knot : plan.reference) {
-        const auto& [at, velocity, acceleration] = knot.point;
-        table.add_row({static_cast<double>(knot.tick) * plan.tick_s, at[0], at[1], at[2], velocity[0], velocity[1],
-                       velocity[2], acceleration[0], acceleration[1], acceleration[2]});
+        std::vector<double> row{static_cast<double>(knot.tick) * plan.tick_s};
+        for (const double* numbers : {knot.point.position, knot.point.velocity, knot.point.acceleration}) {
+            row.insert(row.end(), numbers, numbers + plan.axes.size());
+        }
+        table.add_row(row);
     }
     return table;
 }

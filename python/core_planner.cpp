@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -23,23 +24,36 @@
 namespace downwash::python {
 namespace {
 
+/// The coordinates of a reference point, then their first and second derivatives.
+using ReferenceNumbers = std::array<double, 3 * max_axes>;
+
+ReferencePoint reference_point(const double* numbers) {
+    ReferencePoint point;
+    std::copy_n(numbers, max_axes, point.position);
+    std::copy_n(numbers + max_axes, max_axes, point.velocity);
+    std::copy_n(numbers + 2 * max_axes, max_axes, point.acceleration);
+    return point;
+}
+
 /// A start: pose and speeds, the reference with its derivatives, rotor thrusts, the controller's memory.
 using CoreStart =
-    std::tuple<std::array<double, 8>, std::optional<std::array<double, 9>>, std::vector<double>, std::vector<double>>;
+    std::tuple<std::array<double, 8>, std::optional<ReferenceNumbers>, std::vector<double>, std::vector<double>>;
 
 Start start_of(const CoreStart& given) {
     const auto& [s, reference, rotor_thrust_n, memory] = given;
     Start start{s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], {}, rotor_thrust_n, memory};
     if (reference) {
-        const auto& r = *reference;
-        start.reference = ReferencePoint{{r[0], r[1], r[2]}, {r[3], r[4], r[5]}, {r[6], r[7], r[8]}};
+        start.reference = reference_point(reference->data());
     }
     return start;
 }
 
-std::array<double, 9> numbers_of(const ReferencePoint& r) {
-    return {r.position[0], r.position[1],     r.position[2],     r.velocity[0],    r.velocity[1],
-            r.velocity[2], r.acceleration[0], r.acceleration[1], r.acceleration[2]};
+ReferenceNumbers numbers_of(const ReferencePoint& point) {
+    ReferenceNumbers numbers;
+    std::copy_n(point.position, max_axes, numbers.begin());
+    std::copy_n(point.velocity, max_axes, numbers.begin() + max_axes);
+    std::copy_n(point.acceleration, max_axes, numbers.begin() + 2 * max_axes);
+    return numbers;
 }
 
 CoreStart numbers_of(const Start& s) {
@@ -51,7 +65,7 @@ CoreStart numbers_of(const Start& s) {
 
 /// A plan from the rows of its knots, with the columns of knot_table().
 Plan plan_of(const Points& knots, double tick_s) {
-    constexpr py::ssize_t columns = 10;
+    constexpr auto columns = static_cast<py::ssize_t>(1 + 3 * max_axes);
     if (knots.ndim() != 2 || knots.shape(0) < 1 || knots.shape(1) != columns) {
         throw_input_error("has no knots: expected columns as solution.plan has them", "plan");
     }
@@ -72,9 +86,7 @@ Plan plan_of(const Points& knots, double tick_s) {
                                   ": expected times on control ticks that rise from 0, at most an hour",
                               "plan");
         }
-        plan.reference.push_back(
-            {std::llround(ticks),
-             {{at(i, 1), at(i, 2), at(i, 3)}, {at(i, 4), at(i, 5), at(i, 6)}, {at(i, 7), at(i, 8), at(i, 9)}}});
+        plan.reference.push_back({std::llround(ticks), reference_point(knots.data(i, 1))});
     }
     return plan;
 }
@@ -182,7 +194,7 @@ class CorePlanner {
         return numbers_of(planner_.predicted(start, plan, tick_within(ticks)));
     }
 
-    [[nodiscard]] std::array<double, 9> reference_of(const Points& knots, std::int64_t tick) const {
+    [[nodiscard]] ReferenceNumbers reference_of(const Points& knots, std::int64_t tick) const {
         return numbers_of(downwash::reference_of(plan_of(knots, tick_s()), tick_within(tick)));
     }
 

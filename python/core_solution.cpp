@@ -90,8 +90,7 @@ Problem as_visited(const Problem& problem, const Solution& solution) {
         const Start& start = problem.start;
         const Configuration begin = start.reference ? configuration_of(*start.reference) : start.configuration();
         const Configuration first = solution.plan->first();
-        if (!is_near(begin.x_m, first.x_m) || !is_near(begin.z_m, first.z_m) ||
-            !is_near(begin.arm_rad, first.arm_rad)) {
+        if (!std::ranges::equal(begin.coordinate, first.coordinate, is_near)) {
             throw_input_error("is a plan that begins elsewhere than the problem", "the solution");
         }
     }

@@ -22,8 +22,8 @@ Json tree_json(const NumberTable& tree) {
         return {};
     }
     PackedNumbers packed;
-    for (const char* name : {"x_m", "z_m", "arm_rad"}) {
-        const std::vector<double>& column = *tree.find(name);
+    for (const Axis& axis : planar_axes) {
+        const std::vector<double>& column = *tree.find(axis.position);
         packed.add(std::vector<float>(column.begin(), column.end()));
     }
     std::vector<std::int32_t> parents;

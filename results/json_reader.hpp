@@ -47,15 +47,15 @@ class JsonReader {
     [[nodiscard]] bool has_enough() const noexcept { return errors_.size() >= max_errors; }
 
     /// The member of a group, null included; nothing when it is missing.
-    static std::optional<Node> member(const Node& group, const char* name) {
+    static std::optional<Node> member(const Node& group, std::string_view name) {
         const auto found = group.json->find(name);
         if (found == group.json->end()) {
             return std::nullopt;
         }
-        return Node{&*found, group.key.empty() ? name : group.key + "." + name};
+        return Node{&*found, group.key.empty() ? std::string(name) : group.key + "." + std::string(name)};
     }
 
-    std::optional<Node> required(const Node& group, const char* name) {
+    std::optional<Node> required(const Node& group, std::string_view name) {
         auto node = member(group, name);
         if (!node) {
             report(group, "'" + std::string(name) + "' is missing here");
@@ -81,7 +81,7 @@ class JsonReader {
     /// A figure of a flight, which may be as large as the flight's numbers.
     std::optional<double> figure(const Node& node) { return number(node, max_result); }
 
-    double required_number(const Node& group, const char* name) {
+    double required_number(const Node& group, std::string_view name) {
         const auto node = required(group, name);
         return node ? number(*node).value_or(0) : 0;
     }

@@ -1,6 +1,5 @@
 #include "downwash/results/plan_reader.hpp"
 
-#include <array>
 #include <cmath>
 
 namespace downwash::problems {
@@ -27,12 +26,11 @@ ReferenceKnot read_knot(JsonReader& reader, const Node& node, double tick_s) {
         reader.report(node, "t_s is " + to_text(t_s) + ", expected a whole number of the robot's control ticks of " +
                                 to_text(tick_s) + " s, from 0 to " + std::to_string(max_plan_ticks) + " of them");
     }
-    constexpr std::array names{std::array{"x_m", "z_m", "arm_rad"}, std::array{"vx_m_s", "vz_m_s", "arm_rate_rad_s"},
-                               std::array{"ax_m_s2", "az_m_s2", "arm_acceleration_rad_s2"}};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        knot.point.position[axis] = reader.required_number(node, names[0][axis]);
-        knot.point.velocity[axis] = reader.required_number(node, names[1][axis]);
-        knot.point.acceleration[axis] = reader.required_number(node, names[2][axis]);
+    for (std::size_t i = 0; i < planar_axes.size(); ++i) {
+        const Axis& axis = planar_axes[i];
+        knot.point.position[i] = reader.required_number(node, axis.position);
+        knot.point.velocity[i] = reader.required_number(node, axis.velocity);
+        knot.point.acceleration[i] = reader.required_number(node, axis.acceleration);
     }
     return knot;
 }
@@ -51,14 +49,25 @@ void read_reference(JsonReader& reader, const Node& list, Plan& plan) {
     }
 }
 
+}  // namespace
+
+Configuration read_configuration(JsonReader& reader, const Node& group) {
+    Configuration at;
+    for (std::size_t i = 0; i < planar_axes.size(); ++i) {
+        at[i] = reader.required_number(group, planar_axes[i].position);
+    }
+    return at;
+}
+
+namespace {
+
 std::vector<Configuration> read_waypoints(JsonReader& reader, const Node& list) {
     std::vector<Configuration> waypoints;
     for (const Node& node : reader.groups(list)) {
         if (reader.has_enough()) {
             break;
         }
-        waypoints.push_back({reader.required_number(node, "x_m"), reader.required_number(node, "z_m"),
-                             reader.required_number(node, "arm_rad")});
+        waypoints.push_back(read_configuration(reader, node));
     }
     return waypoints;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -22,7 +23,7 @@ bool is_near(double a, double b) {
 }
 
 bool is_at(const Configuration& a, const Configuration& b) {
-    return is_near(a.x_m, b.x_m) && is_near(a.z_m, b.z_m) && is_near(a.arm_rad, b.arm_rad);
+    return std::ranges::equal(a.coordinate, b.coordinate, is_near);
 }
 
 /// Waypoints and reference must tell the same story.
@@ -44,7 +45,11 @@ void check_start(JsonReader& reader, const Node& reference, const Plan& plan, co
     const Configuration begin = start.reference ? configuration_of(*start.reference) : start.configuration();
     if (!is_at(begin, plan.first())) {
         const auto place = [](const Configuration& c) {
-            return "x_m " + to_text(c.x_m) + ", z_m " + to_text(c.z_m) + ", arm_rad " + to_text(c.arm_rad);
+            std::string text;
+            for (std::size_t i = 0; i < planar_axes.size(); ++i) {
+                text += (i > 0 ? ", " : "") + std::string(planar_axes[i].position) + ' ' + to_text(c[i]);
+            }
+            return text;
         };
         reader.report(reference.at(0), "the plan begins at " + place(plan.first()) + ", but the problem starts at " +
                                            place(begin) + "; is it the plan of another problem?");
@@ -183,8 +188,7 @@ void read_stops(JsonReader& reader, const Node& root, double tick_s, std::option
         bool is_safe = false;
         reader.read_flag(each, "safe", is_safe);
         if (const auto rest = JsonReader::member(each, "rest"); is_safe && rest) {
-            const auto coordinate = [&](const char* key) { return reader.required_number(*rest, key); };
-            moment.rest = Configuration{coordinate("x_m"), coordinate("z_m"), coordinate("arm_rad")};
+            moment.rest = problems::read_configuration(reader, *rest);
             moment.duration_s = reader.amount(each, "duration_s", 0);
         }
     }

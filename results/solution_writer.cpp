@@ -18,15 +18,23 @@ Json number(const std::optional<double>& value) {
     return value ? number(*value) : Json();
 }
 
+/// The coordinates of a configuration by the names of their axes.
+Json configuration_json(const Configuration& at) {
+    Json json;
+    for (std::size_t i = 0; i < planar_axes.size(); ++i) {
+        json[std::string(planar_axes[i].position)] = number(at[i]);
+    }
+    return json;
+}
+
 Json obstruction_json(const std::optional<Obstruction>& obstruction) {
     if (!obstruction) {
         return {};
     }
-    return {{"cause", obstruction->cause},
-            {"x_m", number(obstruction->at.x_m)},
-            {"z_m", number(obstruction->at.z_m)},
-            {"arm_rad", number(obstruction->at.arm_rad)},
-            {"goal_distance_m", number(obstruction->goal_distance_m)}};
+    Json json = {{"cause", obstruction->cause}};
+    json.update(configuration_json(obstruction->at));
+    json["goal_distance_m"] = number(obstruction->goal_distance_m);
+    return json;
 }
 
 Json certificate_json(const std::optional<Certificate>& certificate) {
@@ -103,18 +111,17 @@ Json planning_json(const SearchRecord& record) {
             {"goal", record.goal ? Json(*record.goal) : Json()}};
 }
 
-Json knot_json(const ReferenceKnot& knot, double tick_s) {
-    const ReferencePoint& point = knot.point;
-    return {{"t_s", static_cast<double>(knot.tick) * tick_s},
-            {"x_m", point.position[0]},
-            {"z_m", point.position[1]},
-            {"arm_rad", point.position[2]},
-            {"vx_m_s", point.velocity[0]},
-            {"vz_m_s", point.velocity[1]},
-            {"arm_rate_rad_s", point.velocity[2]},
-            {"ax_m_s2", point.acceleration[0]},
-            {"az_m_s2", point.acceleration[1]},
-            {"arm_acceleration_rad_s2", point.acceleration[2]}};
+Json knot_json(const ReferenceKnot& knot, const Plan& plan) {
+    Json json = {{"t_s", static_cast<double>(knot.tick) * plan.tick_s}};
+    const auto add = [&](std::string_view Axis::*name, const double(&numbers)[max_axes]) {
+        for (std::size_t i = 0; i < plan.axes.size(); ++i) {
+            json[std::string(plan.axes[i].*name)] = numbers[i];
+        }
+    };
+    add(&Axis::position, knot.point.position);
+    add(&Axis::velocity, knot.point.velocity);
+    add(&Axis::acceleration, knot.point.acceleration);
+    return json;
 }
 
 Json plan_json(const std::optional<Plan>& plan) {
@@ -124,9 +131,8 @@ Json plan_json(const std::optional<Plan>& plan) {
     Json waypoints = Json::array();
     Json reference = Json::array();
     for (const ReferenceKnot& knot : plan->reference) {
-        const Configuration at = configuration_of(knot.point);
-        waypoints.push_back({{"x_m", at.x_m}, {"z_m", at.z_m}, {"arm_rad", at.arm_rad}});
-        reference.push_back(knot_json(knot, plan->tick_s));
+        waypoints.push_back(configuration_json(configuration_of(knot.point)));
+        reference.push_back(knot_json(knot, *plan));
     }
     return {{"waypoints", std::move(waypoints)}, {"reference", std::move(reference)}};
 }
@@ -139,7 +145,7 @@ Json stops_json(const std::optional<SafeStops>& stops, double tick_s) {
     for (const SafeStops::Moment& moment : stops->moments) {
         Json each = {{"t_s", static_cast<double>(moment.tick) * tick_s}, {"safe", moment.rest.has_value()}};
         if (moment.rest) {
-            each["rest"] = {{"x_m", moment.rest->x_m}, {"z_m", moment.rest->z_m}, {"arm_rad", moment.rest->arm_rad}};
+            each["rest"] = configuration_json(*moment.rest);
             each["duration_s"] = moment.duration_s;
         }
         moments.push_back(std::move(each));

@@ -11,8 +11,12 @@ namespace {
 
 /// The names of all columns, separated by commas.
 std::string header(const Execution& execution) {
-    std::string names =
-        "t_s,ref_x_m,ref_z_m,ref_arm_rad,x_m,z_m,pitch_rad,arm_rad,vx_m_s,vz_m_s,pitch_rate_rad_s,arm_rate_rad_s,"
+    std::string names = "t_s,";
+    for (const Axis& axis : planar_axes) {
+        names += "ref_" + std::string(axis.position) + ',';
+    }
+    names +=
+        "x_m,z_m,pitch_rad,arm_rad,vx_m_s,vz_m_s,pitch_rate_rad_s,arm_rate_rad_s,"
         "thrust_cmd_n,pitch_torque_cmd_nm,arm_torque_nm,thrust_n,pitch_torque_nm,aero_factor_min,aero_factor_max,"
         "clearance_m,ee_x_m,ee_z_m,power_w,energy_j";
     for (int i = 1; i <= execution.rotor_count; ++i) {
@@ -40,7 +44,7 @@ std::vector<double> numbers_of(const Execution& execution, const FlightRow& row)
     const double* u = row.u;
     // clang-format off
     std::vector<double> numbers{
-        row.t_s, reference[0], reference[1], reference[2],
+        row.t_s, reference[plane::x], reference[plane::z], reference[plane::arm],
         q[0], q[1], q[2], q[3], u[0], u[1], u[2], u[3],
         row.thrust_command_n, row.pitch_torque_command_nm, row.arm_torque_nm, row.thrust_n, row.pitch_torque_nm,
         min_factor, max_factor, std::isinf(row.clearance_m) ? NAN : row.clearance_m,

@@ -8,9 +8,15 @@
 namespace downwash {
 
 std::string tree_csv(std::span<const TreeNode> tree) {
-    std::string text = "x_m,z_m,arm_rad,parent\n";
+    std::string text;
+    for (const Axis& axis : planar_axes) {
+        text += std::string(axis.position) + ',';
+    }
+    text += "parent\n";
     for (const TreeNode& node : tree) {
-        text += to_text(node.at.x_m) + ',' + to_text(node.at.z_m) + ',' + to_text(node.at.arm_rad) + ',';
+        for (std::size_t i = 0; i < planar_axes.size(); ++i) {
+            text += to_text(node.at[i]) + ',';
+        }
         text += node.parent == TreeNode::no_parent ? "" : std::to_string(node.parent);
         text += '\n';
     }
@@ -18,10 +24,17 @@ std::string tree_csv(std::span<const TreeNode> tree) {
 }
 
 NumberTable tree_table(std::span<const TreeNode> tree) {
-    NumberTable table{{"x_m", "z_m", "arm_rad", "parent"}, std::vector<std::vector<double>>(4), {}};
+    NumberTable table;
+    for (const Axis& axis : planar_axes) {
+        table.names.emplace_back(axis.position);
+    }
+    table.names.emplace_back("parent");
+    table.columns.resize(table.names.size());
     for (const TreeNode& node : tree) {
-        const bool is_root = node.parent == TreeNode::no_parent;
-        table.add_row({node.at.x_m, node.at.z_m, node.at.arm_rad, is_root ? NAN : static_cast<double>(node.parent)});
+        const auto end = node.at.coordinate.begin() + planar_axes.size();
+        std::vector<double> row(node.at.coordinate.begin(), end);
+        row.push_back(node.parent == TreeNode::no_parent ? NAN : static_cast<double>(node.parent));
+        table.add_row(row);
     }
     return table;
 }

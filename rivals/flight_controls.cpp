@@ -22,7 +22,8 @@ class FlightControl : public oc::RealVectorControlSpace::ControlType {
 
 class FlightControlSpace : public oc::RealVectorControlSpace {
  public:
-    explicit FlightControlSpace(const ob::StateSpacePtr& states) : oc::RealVectorControlSpace(states, 3) {}
+    explicit FlightControlSpace(const ob::StateSpacePtr& states)
+        : oc::RealVectorControlSpace(states, planar_axes.size()) {}
 
     oc::Control* allocControl() const override {
         auto* control = new FlightControl;
@@ -61,12 +62,12 @@ class VelocitySampler : public oc::ControlSampler {
         static_cast<FlightControl*>(control)->segment_ticks = 0;
         double* velocity = control->as<oc::RealVectorControlSpace::ControlType>()->values;
         do {
-            velocity[0] = random_.uniform(-1, 1);
-            velocity[1] = random_.uniform(-1, 1);
-        } while (velocity[0] * velocity[0] + velocity[1] * velocity[1] > 1);
-        velocity[0] *= limits_.max_speed_m_s;
-        velocity[1] *= limits_.max_speed_m_s;
-        velocity[2] = random_.uniform(-limits_.max_arm_rate_rad_s, limits_.max_arm_rate_rad_s);
+            velocity[plane::x] = random_.uniform(-1, 1);
+            velocity[plane::z] = random_.uniform(-1, 1);
+        } while (velocity[plane::x] * velocity[plane::x] + velocity[plane::z] * velocity[plane::z] > 1);
+        velocity[plane::x] *= limits_.max_speed_m_s;
+        velocity[plane::z] *= limits_.max_speed_m_s;
+        velocity[plane::arm] = random_.uniform(-limits_.max_arm_rate_rad_s, limits_.max_arm_rate_rad_s);
     }
     unsigned int sampleStepCount(unsigned int least, unsigned int most) override {
         return static_cast<unsigned int>(random_.uniform(least, most + 1.0));
@@ -114,7 +115,7 @@ class ClosingGoal : public FlightGoal {
 
 void follow(oc::Control* control, const ReferencePoint& to, std::int64_t ticks) {
     auto* own = static_cast<FlightControl*>(control);
-    std::fill_n(own->values, 3, 0.0);
+    std::fill_n(own->values, planar_axes.size(), 0.0);
     own->segment_end = to;
     own->segment_ticks = ticks;
 }
@@ -127,11 +128,11 @@ oc::SpaceInformationPtr make_flight_information(const SteeredFlights& flights, R
     const auto states = make_flight_space(flights.task(), random);
     const auto controls = std::make_shared<FlightControlSpace>(states);
     const MotionLimits& limits = flights.flights().limits();
-    ob::RealVectorBounds bounds(3);
-    const double most[3] = {limits.max_speed_m_s, limits.max_speed_m_s, limits.max_arm_rate_rad_s};
-    for (unsigned int i = 0; i < 3; ++i) {
-        bounds.setLow(i, -most[i]);
-        bounds.setHigh(i, most[i]);
+    ob::RealVectorBounds bounds(planar_axes.size());
+    for (unsigned int i = 0; i < planar_axes.size(); ++i) {
+        const double most = max_rate(limits, planar_axes[i].group);
+        bounds.setLow(i, -most);
+        bounds.setHigh(i, most);
     }
     controls->setBounds(bounds);
     controls->setControlSamplerAllocator([&limits, &random](const oc::ControlSpace* space) -> oc::ControlSamplerPtr {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace downwash::planning {
 namespace {
@@ -12,17 +13,27 @@ constexpr double wanted_step_s = 0.5;
 constexpr double peak_acceleration = 1.5;  // of gain / duration
 constexpr double peak_jerk = 6;            // of gain / duration^2
 
-/// Shortens a vector to a length; leaves shorter ones alone.
-void shorten(double& x, double& z, double length) {
-    const double now = std::sqrt(x * x + z * z);
-    if (now > length) {
-        x *= length / now;
-        z *= length / now;
+/// The length of the translations among some rates.
+double speed_of(const double rates[max_axes]) {
+    double squares = 0;
+    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
+        if (planar_axes[axis].group == AxisGroup::translation) {
+            squares += rates[axis] * rates[axis];
+        }
     }
+    return std::sqrt(squares);
 }
 
-double speed_of(const ReferencePoint& point) {
-    return std::sqrt(point.velocity[0] * point.velocity[0] + point.velocity[1] * point.velocity[1]);
+/// Shortens the translations together to a length and each joint to another; leaves shorter ones alone.
+void shorten(double rates[max_axes], double length, double joint) {
+    const double now = speed_of(rates);
+    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
+        if (planar_axes[axis].group == AxisGroup::joint) {
+            rates[axis] = std::clamp(rates[axis], -joint, joint);
+        } else if (now > length) {
+            rates[axis] *= length / now;
+        }
+    }
 }
 
 /// Way from a speed to rest in steps, each of which takes away so much, the last one the remainder.
@@ -42,17 +53,14 @@ ReferenceSteps::ReferenceSteps(const MotionLimits& limits, double tick_s)
                                limits_.max_jerk_m_s3 * duration_s_ * duration_s_ / peak_jerk)),
       arm_gain_rad_s_(limits.max_arm_acceleration_rad_s2 * duration_s_ / peak_acceleration) {}
 
-ReferencePoint ReferenceSteps::after(const ReferencePoint& from, const double velocity[3]) const noexcept {
-    double x = velocity[0];
-    double z = velocity[1];
-    shorten(x, z, limits_.max_speed_m_s);
-    double gain_x = x - from.velocity[0];
-    double gain_z = z - from.velocity[1];
-    shorten(gain_x, gain_z, speed_gain_m_s_);
-    const double arm = std::clamp(velocity[2], -limits_.max_arm_rate_rad_s, limits_.max_arm_rate_rad_s);
-    const double gain[3] = {gain_x, gain_z, std::clamp(arm - from.velocity[2], -arm_gain_rad_s_, arm_gain_rad_s_)};
+ReferencePoint ReferenceSteps::after(const ReferencePoint& from, const double velocity[max_axes]) const noexcept {
+    double wanted[max_axes], gain[max_axes];
+    std::copy_n(velocity, max_axes, wanted);
+    shorten(wanted, limits_.max_speed_m_s, limits_.max_arm_rate_rad_s);
+    std::transform(wanted, wanted + max_axes, from.velocity, gain, std::minus{});
+    shorten(gain, speed_gain_m_s_, arm_gain_rad_s_);
     ReferencePoint next;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
         next.velocity[axis] = from.velocity[axis] + gain[axis];
         next.position[axis] = from.position[axis] + duration_s_ * (from.velocity[axis] + 0.5 * gain[axis]);
     }
@@ -60,17 +68,26 @@ ReferencePoint ReferenceSteps::after(const ReferencePoint& from, const double ve
 }
 
 double ReferenceSteps::braking_ticks(const ReferencePoint& from) const noexcept {
-    return static_cast<double>(ticks_) * std::max(std::ceil(speed_of(from) / speed_gain_m_s_),
-                                                  std::ceil(std::abs(from.velocity[2]) / arm_gain_rad_s_));
+    double steps = std::ceil(speed_of(from.velocity) / speed_gain_m_s_);
+    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
+        if (planar_axes[axis].group == AxisGroup::joint) {
+            steps = std::max(steps, std::ceil(std::abs(from.velocity[axis]) / arm_gain_rad_s_));
+        }
+    }
+    return static_cast<double>(ticks_) * steps;
 }
 
 Configuration ReferenceSteps::rest_of(const ReferencePoint& from) const noexcept {
-    const double speed = speed_of(from);
-    const double braking_s = speed > 0 ? braking_way(speed, speed_gain_m_s_, duration_s_) / speed : 0;
-    const double arm = std::abs(from.velocity[2]);
-    const double arm_braking_s = arm > 0 ? braking_way(arm, arm_gain_rad_s_, duration_s_) / arm : 0;
-    return {from.position[0] + braking_s * from.velocity[0], from.position[1] + braking_s * from.velocity[1],
-            from.position[2] + arm_braking_s * from.velocity[2]};
+    const double speed = speed_of(from.velocity);
+    Configuration rest;
+    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
+        const bool is_joint = planar_axes[axis].group == AxisGroup::joint;
+        const double rate = is_joint ? std::abs(from.velocity[axis]) : speed;
+        const double gain = is_joint ? arm_gain_rad_s_ : speed_gain_m_s_;
+        const double braking_s = rate > 0 ? braking_way(rate, gain, duration_s_) / rate : 0;
+        rest[axis] = from.position[axis] + braking_s * from.velocity[axis];
+    }
+    return rest;
 }
 
 }  // namespace downwash::planning

@@ -20,8 +20,8 @@ class ReferenceSteps {
 
     /// The reference one step later. It takes on the wanted velocity as far as the limits allow: the speed never
     /// exceeds its limit, nor the acceleration, whose peak in the middle of the step is 3/2 of its mean.
-    /// @param from without acceleration   @param velocity wanted of (x, z, arm) [m/s, m/s, rad/s], finite
-    [[nodiscard]] ReferencePoint after(const ReferencePoint& from, const double velocity[3]) const noexcept;
+    /// @param from without acceleration   @param velocity wanted along each axis [m/s or rad/s], finite
+    [[nodiscard]] ReferencePoint after(const ReferencePoint& from, const double velocity[max_axes]) const noexcept;
 
     /// Where the reference comes to rest when it is asked to stand still from now on.
     [[nodiscard]] Configuration rest_of(const ReferencePoint& from) const noexcept;

@@ -1,5 +1,6 @@
 #include "downwash/rivals/steered_flights.hpp"
 
+#include <algorithm>
 #include <span>
 
 namespace downwash::planning {
@@ -9,7 +10,7 @@ namespace {
 constexpr double closing_range_m = 0.5;
 
 bool stands_still(const ReferencePoint& point) {
-    return point.velocity[0] == 0 && point.velocity[1] == 0 && point.velocity[2] == 0;
+    return std::ranges::all_of(point.velocity, [](double rate) { return rate == 0; });
 }
 
 }  // namespace
@@ -23,7 +24,7 @@ FlightPoint SteeredFlights::start() const {
     return point;
 }
 
-FlightPoint SteeredFlights::steered(const FlightPoint& from, const double velocity[3]) const {
+FlightPoint SteeredFlights::steered(const FlightPoint& from, const double velocity[max_axes]) const {
     FlightPoint next = from;
     next.reference = steps_.after(from.reference, velocity);
     next.rest = steps_.rest_of(next.reference);
@@ -32,7 +33,7 @@ FlightPoint SteeredFlights::steered(const FlightPoint& from, const double veloci
     return next;
 }
 
-FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double velocity[3]) const {
+FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double velocity[max_axes]) const {
     FlightPoint next = steered(from, velocity);
     if (static_cast<double>(next.ticks) + steps_.braking_ticks(next.reference) > static_cast<double>(max_plan_ticks)) {
         flights_.count_rejection("too_long");
@@ -54,7 +55,7 @@ FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double veloci
     return next;
 }
 
-FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double velocity[3]) const {
+FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double velocity[max_axes]) const {
     const FlightPoint next = steered(from, velocity);
     FlightPoint flown = followed(from, next.reference, steps_.ticks());
     flown.rest = next.rest;

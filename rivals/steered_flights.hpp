@@ -34,10 +34,10 @@ class SteeredFlights {
 
     /// Flies one step with the reference taking on a velocity. The tick at which a rule is broken ends the step.
     /// @param velocity wanted of (x, z, arm) [m/s, m/s, rad/s]
-    [[nodiscard]] FlightPoint stepped(const FlightPoint& from, const double velocity[3]) const;
+    [[nodiscard]] FlightPoint stepped(const FlightPoint& from, const double velocity[max_axes]) const;
 
     /// A step that was flown before, flown again: neither counted, nor cut short when the search is over.
-    [[nodiscard]] FlightPoint stepped_again(const FlightPoint& from, const double velocity[3]) const;
+    [[nodiscard]] FlightPoint stepped_again(const FlightPoint& from, const double velocity[max_axes]) const;
 
     /// Flies a whole reference segment, as our own planner's edges are. Not counted. It is the caller's business that
     /// the segment keeps the limits of motion.
@@ -58,7 +58,7 @@ class SteeredFlights {
 
  private:
     /// Where a step leads but for its flight: the reference, and the place where that would rest.
-    [[nodiscard]] FlightPoint steered(const FlightPoint& from, const double velocity[3]) const;
+    [[nodiscard]] FlightPoint steered(const FlightPoint& from, const double velocity[max_axes]) const;
 
     PlannedFlights& flights_;
     const SearchTask& task_;

@@ -43,23 +43,24 @@ class Sampler : public ob::StateSampler {
     Random& random_;
 };
 
-/// (x, z, arm) of the place of rest, the arm as a length.
+/// The coordinates of the place of rest, angles as lengths.
 class PlaceOfRest : public ob::ProjectionEvaluator {
  public:
     PlaceOfRest(const ob::StateSpace* states, const SearchSpace& space)
         : ob::ProjectionEvaluator(states), search_(space) {}
 
-    unsigned int getDimension() const override { return 3; }
+    unsigned int getDimension() const override { return static_cast<unsigned int>(search_.axes().size()); }
     void defaultCellSizes() override {
         constexpr double cell_m = 1.0;
-        cellSizes_ = {cell_m, cell_m, cell_m};
+        cellSizes_.assign(search_.axes().size(), cell_m);
     }
     void project(const ob::State* state, Eigen::Ref<Eigen::VectorXd> projection) const override {
         const Configuration& rest = point_of(state).rest;
-        projection[0] = rest.x_m;
-        projection[1] = rest.z_m;
-        projection[2] =
-            search_.arm_weight_m() * (search_.arm_is_limited() ? rest.arm_rad : lane::wrap_angle(rest.arm_rad));
+        for (std::size_t i = 0; i < search_.axes().size(); ++i) {
+            const SearchAxis& axis = search_.axes()[i];
+            projection[static_cast<Eigen::Index>(i)] =
+                axis.weight_m * (axis.wraps ? lane::wrap_angle(rest[i]) : rest[i]);
+        }
     }
 
  private:
@@ -73,12 +74,14 @@ class FlightSpace : public ob::StateSpace {
         type_ = ob::STATE_SPACE_UNKNOWN;
     }
 
-    unsigned int getDimension() const override { return 3; }
+    unsigned int getDimension() const override { return static_cast<unsigned int>(space().axes().size()); }
     double getMaximumExtent() const override { return space().extent_m(); }
     double getMeasure() const override {
-        const Bounds& b = space().bounds();
-        return (b.x_high_m - b.x_low_m) * (b.z_high_m - b.z_low_m) * space().arm_weight_m() *
-               (space().arm_high_rad() - space().arm_low_rad());
+        double measure = 1;
+        for (const SearchAxis& axis : space().axes()) {
+            measure = measure * axis.weight_m * (axis.high - axis.low);
+        }
+        return measure;
     }
     /// Not one: moments of rest at the same place differ in cost and time. OMPL then searches neighbours in a way that
     /// draws no random numbers.
@@ -115,7 +118,11 @@ class FlightSpace : public ob::StateSpace {
     }
     void printState(const ob::State* state, std::ostream& out) const override {
         const Configuration at = configuration_of(point_of(state).vehicle.plant.q);
-        out << "vehicle at x " << at.x_m << " m, z " << at.z_m << " m, arm at " << at.arm_rad << " rad\n";
+        out << "vehicle at";
+        for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
+            out << ' ' << planar_axes[axis].position << ' ' << at[axis];
+        }
+        out << '\n';
     }
     void registerProjections() override { registerDefaultProjection(std::make_shared<PlaceOfRest>(this, space())); }
 

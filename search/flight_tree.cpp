@@ -5,6 +5,19 @@
 
 namespace downwash::planning {
 
+namespace {
+
+/// The largest difference of a coordinate, angles taken as they stand [m or rad].
+double max_difference(const Configuration& a, const Configuration& b) {
+    double largest = 0;
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+        largest = std::max(largest, std::abs(a[axis] - b[axis]));
+    }
+    return largest;
+}
+
+}  // namespace
+
 FlightPoint moment_at(const FlightNode& node) {
     return {node.fleet.front(), node.reference, node.configuration, node.cost, node.ticks_from_start};
 }
@@ -27,14 +40,7 @@ std::vector<FlightNode*> FlightTree::nearest(const Configuration& to, std::size_
     best.reserve(count + 1);
     double farthest = HUGE_VAL;  // squared
     for (std::size_t i = 0; i < places_.size(); ++i) {
-        const double dx = places_[i].x_m - to.x_m;
-        const double dz = places_[i].z_m - to.z_m;
-        const double travel = dx * dx + dz * dz;
-        if (travel >= farthest) {
-            continue;
-        }
-        const double turn = space_.arm_weight_m() * space_.arm_turn_rad(places_[i].arm_rad, to.arm_rad);
-        const double squared = travel + turn * turn;
+        const double squared = space_.squared_distance_m2(places_[i], to, farthest);
         if (squared >= farthest) {
             continue;
         }
@@ -159,8 +165,8 @@ std::size_t FlightTree::rewire(std::span<const Rewiring> rewirings) {
     std::vector<Edge> edges;
     for (const Rewiring& r : rewirings) {
         const Configuration& to = r.node->configuration;
-        // Otherwise the arm would arrive a whole turn away.
-        if (std::abs(space_.seen_from(r.parent->configuration, to).arm_rad - to.arm_rad) <= 1e-9) {
+        // Otherwise a joint would arrive a whole turn away.
+        if (max_difference(space_.seen_from(r.parent->configuration, to), to) <= 1e-9) {
             open.push_back(r);
             edges.push_back({r.parent, r.node->reference});
         }

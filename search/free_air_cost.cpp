@@ -30,15 +30,15 @@ FreeAirCost::FreeAirCost(const SearchTask& task)
       hover_power_w_(hover_power_w(task.model)) {}
 
 double FreeAirCost::of_motion(const Configuration& from, const Configuration& to) const {
-    const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));
-    const MotionLimits limits = limits_along(limits_, to.x_m - from.x_m, to.z_m - from.z_m);
+    const double turn = space_.turn_rad(from, to);
+    const MotionLimits limits = limits_along(limits_, to[plane::x] - from[plane::x], to[plane::z] - from[plane::z]);
     const double duration_s = rest_to_rest_duration_s(travel_m(from, to), turn, limits);
     const double density = counts_clearance_ ? mean_clearance_density(from, space_.seen_from(from, to)) : 0;
     return objective_({{space_.distance_m(from, to)}, hover_power_w_ * duration_s, duration_s, duration_s * density});
 }
 
 double FreeAirCost::min_cost_of_motion(const Configuration& from, const Configuration& to) const {
-    const double turn = std::abs(space_.arm_turn_rad(from.arm_rad, to.arm_rad));
+    const double turn = space_.turn_rad(from, to);
     const double duration_s =
         peak_over_mean_speed * std::max(travel_m(from, to) / limits_.max_speed_m_s, turn / limits_.max_arm_rate_rad_s);
     // Far from everything clearance costs next to nothing.
@@ -69,7 +69,7 @@ double FreeAirCost::of_hold(const Configuration& at, double hold_s) const {
 }
 
 double FreeAirCost::clearance_density(const Configuration& at) const {
-    return simulation::clearance_density(model_.collisions().clearance_m({at.x_m, at.z_m, 0, at.arm_rad}));
+    return simulation::clearance_density(model_.collisions().clearance_m(level_at(at)));
 }
 
 double FreeAirCost::mean_clearance_density(const Configuration& from, const Configuration& to) const {

@@ -16,9 +16,8 @@ namespace downwash::planning {
 namespace {
 
 namespace ob = ompl::base;
-using Position = ob::RealVectorStateSpace::StateType;
-using Arm = ob::RealVectorStateSpace::StateType;
-using TurningArm = ob::SO2StateSpace::StateType;
+using RealVector = ob::RealVectorStateSpace::StateType;
+using Turn = ob::SO2StateSpace::StateType;
 
 /// It is a metric space, but if it said so OMPL would search neighbours with random numbers of its own seed.
 class ConfigurationSpace : public ob::CompoundStateSpace {
@@ -26,22 +25,21 @@ class ConfigurationSpace : public ob::CompoundStateSpace {
     bool isMetricSpace() const override { return false; }
 };
 
+/// The translations as one space, then one for each joint.
 ob::StateSpacePtr make_space(const SearchSpace& space) {
-    const auto position = std::make_shared<ob::RealVectorStateSpace>(2);
-    ob::RealVectorBounds bounds(2);
-    bounds.setLow(0, space.bounds().x_low_m);
-    bounds.setHigh(0, space.bounds().x_high_m);
-    bounds.setLow(1, space.bounds().z_low_m);
-    bounds.setHigh(1, space.bounds().z_high_m);
-    position->setBounds(bounds);
+    const auto position = std::make_shared<ob::RealVectorStateSpace>();
     const auto compound = std::make_shared<ConfigurationSpace>();
     compound->addSubspace(position, 1);
-    if (space.arm_is_limited()) {
-        const auto arm = std::make_shared<ob::RealVectorStateSpace>(1);
-        arm->setBounds(space.arm_low_rad(), space.arm_high_rad());
-        compound->addSubspace(arm, space.arm_weight_m());
-    } else {
-        compound->addSubspace(std::make_shared<ob::SO2StateSpace>(), space.arm_weight_m());
+    for (const SearchAxis& axis : space.axes()) {
+        if (axis.group == AxisGroup::translation) {
+            position->addDimension(axis.low, axis.high);
+        } else if (axis.wraps) {
+            compound->addSubspace(std::make_shared<ob::SO2StateSpace>(), axis.weight_m);
+        } else {
+            const auto joint = std::make_shared<ob::RealVectorStateSpace>(1);
+            joint->setBounds(axis.low, axis.high);
+            compound->addSubspace(joint, axis.weight_m);
+        }
     }
     compound->lock();
     return compound;
@@ -57,9 +55,9 @@ class Sampler : public ob::StateSampler {
 
     void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
         Configuration c = read(near, search_);
-        c.x_m += random_.uniform(-distance, distance);
-        c.z_m += random_.uniform(-distance, distance);
-        c.arm_rad += random_.uniform(-distance, distance) / search_.arm_weight_m();
+        for (std::size_t axis = 0; axis < search_.axes().size(); ++axis) {
+            c[axis] += random_.uniform(-distance, distance) / search_.axes()[axis].weight_m;
+        }
         write(c, state, search_);
         space_->enforceBounds(state);
     }
@@ -74,9 +72,9 @@ class Sampler : public ob::StateSampler {
             return sum;
         };
         Configuration c = read(mean, search_);
-        c.x_m += deviation * normal();
-        c.z_m += deviation * normal();
-        c.arm_rad += deviation * normal() / search_.arm_weight_m();
+        for (std::size_t axis = 0; axis < search_.axes().size(); ++axis) {
+            c[axis] += deviation * normal() / search_.axes()[axis].weight_m;
+        }
         write(c, state, search_);
         space_->enforceBounds(state);
     }
@@ -117,7 +115,7 @@ class StraightMotion : public ob::MotionValidator {
         const Configuration a = read(from, space_);
         const Configuration b = space_.seen_from(a, read(to, space_));
         const double arm_length_m = 2 * space_.arm_weight_m();
-        const double motion_m = travel_m(a, b) + arm_length_m * std::abs(b.arm_rad - a.arm_rad);
+        const double motion_m = travel_m(a, b) + arm_length_m * std::abs(b[plane::arm] - a[plane::arm]);
         const int steps = static_cast<int>(std::ceil(motion_m / step_m_)) + 1;
         for (int i = 1; i <= steps; ++i) {
             const Configuration c = between(a, b, static_cast<double>(i) / steps);
@@ -178,21 +176,34 @@ bool QueryCounts::note(Rejection rejection) noexcept {
 
 void write(const Configuration& c, ob::State* state, const SearchSpace& space) {
     auto* compound = state->as<ob::CompoundState>();
-    auto* position = compound->as<Position>(0);
-    position->values[0] = c.x_m;
-    position->values[1] = c.z_m;
-    if (space.arm_is_limited()) {
-        compound->as<Arm>(1)->values[0] = c.arm_rad;
-    } else {
-        compound->as<TurningArm>(1)->value = lane::wrap_angle(c.arm_rad);
+    unsigned int translation = 0, joint = 1;
+    for (std::size_t i = 0; i < space.axes().size(); ++i) {
+        const SearchAxis& axis = space.axes()[i];
+        if (axis.group == AxisGroup::translation) {
+            compound->as<RealVector>(0)->values[translation++] = c[i];
+        } else if (axis.wraps) {
+            compound->as<Turn>(joint++)->value = lane::wrap_angle(c[i]);
+        } else {
+            compound->as<RealVector>(joint++)->values[0] = c[i];
+        }
     }
 }
 
 Configuration read(const ob::State* state, const SearchSpace& space) {
     const auto* compound = state->as<ob::CompoundState>();
-    const auto* position = compound->as<Position>(0);
-    return {position->values[0], position->values[1],
-            space.arm_is_limited() ? compound->as<Arm>(1)->values[0] : compound->as<TurningArm>(1)->value};
+    unsigned int translation = 0, joint = 1;
+    Configuration c;
+    for (std::size_t i = 0; i < space.axes().size(); ++i) {
+        const SearchAxis& axis = space.axes()[i];
+        if (axis.group == AxisGroup::translation) {
+            c[i] = compound->as<RealVector>(0)->values[translation++];
+        } else if (axis.wraps) {
+            c[i] = compound->as<Turn>(joint++)->value;
+        } else {
+            c[i] = compound->as<RealVector>(joint++)->values[0];
+        }
+    }
+    return c;
 }
 
 ob::SpaceInformationPtr make_space_information(const SearchSpace& space, Random& random, double motion_step_m,

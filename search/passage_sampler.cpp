@@ -62,8 +62,9 @@ std::optional<PassageSampler::Bridge> PassageSampler::found(Random& random) cons
             const double across_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
             const double length_m = random.uniform(0, bridge_m_);
             const auto across = lane::sin_cos(across_rad);
-            const Configuration other_side{one_side.x_m + length_m * across.cosine,
-                                           one_side.z_m + length_m * across.sine, one_side.arm_rad};
+            Configuration other_side = one_side;
+            other_side[plane::x] += length_m * across.cosine;
+            other_side[plane::z] += length_m * across.sine;
             const Configuration middle = between(one_side, other_side, 0.5);
             if (space_.rejection_at(middle, pitch_rad) == Rejection::none && collides(other_side, pitch_rad)) {
                 return Bridge{middle, across_rad, pitch_rad};
@@ -78,14 +79,14 @@ PassageSampler::Through PassageSampler::through(const Bridge& bridge, Random& ra
     if (limits_.max_thrust_ratio) {
         const double force_m_s2 = random.uniform(0.1, 1) * *limits_.max_thrust_ratio * standard_gravity_m_s2;
         const auto direction = lane::sin_cos(bridge.pitch_rad);
-        point.acceleration[0] = force_m_s2 * direction.sine;
-        point.acceleration[1] = force_m_s2 * direction.cosine - standard_gravity_m_s2;
+        point.acceleration[plane::x] = force_m_s2 * direction.sine;
+        point.acceleration[plane::z] = force_m_s2 * direction.cosine - standard_gravity_m_s2;
     }
     const double turned_rad = 0.5 * std::numbers::pi + random.uniform(-spread_rad, spread_rad);
     const auto direction = lane::sin_cos(bridge.across_rad + turned_rad);
     const double speed_m_s = random.uniform(0, limits_.max_speed_m_s);
-    point.velocity[0] = speed_m_s * direction.cosine;
-    point.velocity[1] = speed_m_s * direction.sine;
+    point.velocity[plane::x] = speed_m_s * direction.cosine;
+    point.velocity[plane::z] = speed_m_s * direction.sine;
     const auto across = lane::sin_cos(bridge.across_rad);
     return {point, {-across.sine, across.cosine}};
 }
@@ -94,7 +95,7 @@ PassageSampler::Through PassageSampler::beside_known(Random& random) const {
     Through through = known_[index_below(known_.size(), random)];
     ReferencePoint& point = through.point;
     const double force_m_s2 = force_change * limits_.max_thrust_ratio.value_or(0) * standard_gravity_m_s2;
-    for (const int axis : {0, 1}) {
+    for (const std::size_t axis : {plane::x, plane::z}) {
         point.position[axis] += shift_m * random.uniform(-1, 1);
         point.velocity[axis] += speed_change * limits_.max_speed_m_s * random.uniform(-1, 1);
         point.acceleration[axis] += force_m_s2 * random.uniform(-1, 1);
@@ -128,7 +129,7 @@ std::optional<ReferencePoint> PassageSampler::rest_beside(const Through& through
         const double t = static_cast<double>(ticks) * tick_s_;
         ReferencePoint rest = at_rest(configuration_of(point));
         double ahead_m = 0;
-        for (const int axis : {0, 1}) {
+        for (const std::size_t axis : {plane::x, plane::z}) {
             // The way of the cubic of speed between both ends, which has the least jerk.
             const double step_m = side * point.velocity[axis] * t / 2 + point.acceleration[axis] * t * t / 12;
             rest.position[axis] += step_m;

@@ -39,22 +39,22 @@ std::size_t PlanChanges::index_below(std::size_t count) {
 
 void PlanChanges::shift(ReferencePoint& point, double step) {
     const double size_m = step * largest_shift_m;
-    point.position[0] += noise(size_m);
-    point.position[1] += noise(size_m);
-    if (!space_.arm_is_fixed()) {
-        point.position[2] += noise(size_m / space_.arm_weight_m());
+    for (std::size_t i = 0; i < space_.axes().size(); ++i) {
+        const SearchAxis& axis = space_.axes()[i];
+        if (!axis.is_fixed()) {
+            point.position[i] += noise(size_m / axis.weight_m);
+        }
     }
 }
 
 void PlanChanges::change_speed(ReferencePoint& point, double step) {
     const double share = step * largest_speed_change;
-    for (const int axis : {0, 1}) {
-        point.velocity[axis] += noise(share * motion_.max_speed_m_s);
-        point.acceleration[axis] += noise(share * motion_.max_acceleration_m_s2);
-    }
-    if (!space_.arm_is_fixed()) {
-        point.velocity[2] += noise(share * motion_.max_arm_rate_rad_s);
-        point.acceleration[2] += noise(share * motion_.max_arm_acceleration_rad_s2);
+    for (std::size_t i = 0; i < space_.axes().size(); ++i) {
+        const SearchAxis& axis = space_.axes()[i];
+        if (!axis.is_fixed()) {
+            point.velocity[i] += noise(share * max_rate(motion_, axis.group));
+            point.acceleration[i] += noise(share * max_acceleration(motion_, axis.group));
+        }
     }
 }
 
@@ -119,18 +119,18 @@ ChangedPoints PlanChanges::with_corner_changed(Points points, double kind, doubl
 
 /// Gives a corner a speed towards where the corners beside it lead.
 void PlanChanges::fly_through(Points& points, std::size_t corner) {
-    const double* before = points[corner - 1].position;
-    const double* after = points[corner + 1].position;
-    const double dx = after[0] - before[0];
-    const double dz = after[1] - before[1];
-    const double per_metre = 1 / std::max(std::sqrt(dx * dx + dz * dz), 1e-3);
+    const Configuration before = configuration_of(points[corner - 1]);
+    const Configuration after = configuration_of(points[corner + 1]);
+    const double per_metre = 1 / std::max(travel_m(before, after), 1e-3);
     const double speed_m_s = random_.uniform(0, 1) * motion_.max_speed_m_s;
     ReferencePoint& p = points[corner];
-    for (int axis = 0; axis < 3; ++axis) {
-        p.velocity[axis] = speed_m_s * per_metre * (after[axis] - before[axis]);
-        p.acceleration[axis] = 0;
+    for (std::size_t i = 0; i < space_.axes().size(); ++i) {
+        p.velocity[i] = speed_m_s * per_metre * (after[i] - before[i]);
+        p.acceleration[i] = 0;
+        if (space_.axes()[i].group == AxisGroup::joint) {
+            p.velocity[i] = std::clamp(p.velocity[i], -motion_.max_arm_rate_rad_s, motion_.max_arm_rate_rad_s);
+        }
     }
-    p.velocity[2] = std::clamp(p.velocity[2], -motion_.max_arm_rate_rad_s, motion_.max_arm_rate_rad_s);
 }
 
 }  // namespace downwash::planning

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <stdexcept>
 
@@ -140,9 +141,15 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     const ReferencePoint& a = segment.from();
     const ReferencePoint& b = segment.to();
     const double arm_m = task_.problem.robot.arm.length_m;
-    const auto weighted = [arm_m](const double* v) { return std::abs(v[0]) + std::abs(v[1]) + arm_m * std::abs(v[2]); };
-    const double step[3] = {b.position[0] - a.position[0], b.position[1] - a.position[1],
-                            b.position[2] - a.position[2]};
+    const auto weighted = [arm_m](const double* v) {
+        double sum_m = 0;
+        for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
+            sum_m += (planar_axes[axis].group == AxisGroup::translation ? 1 : arm_m) * std::abs(v[axis]);
+        }
+        return sum_m;
+    };
+    double step[max_axes];
+    std::transform(b.position, b.position + max_axes, a.position, step, std::minus{});
     // Ends that move may lead beyond the line between them.
     const double motion_m = weighted(step) + (weighted(a.velocity) + weighted(b.velocity)) * segment.duration_s();
     const auto samples = static_cast<std::int64_t>(std::ceil(motion_m / spacing_m)) + 1;

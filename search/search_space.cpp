@@ -14,51 +14,85 @@ ReferencePoint reference_at(const Start& start) noexcept {
         return *start.reference;
     }
     ReferencePoint point = at_rest(start.configuration());
-    point.velocity[0] = start.vx_m_s;
-    point.velocity[1] = start.vz_m_s;
-    point.velocity[2] = start.arm_rate_rad_s;
+    point.velocity[plane::x] = start.vx_m_s;
+    point.velocity[plane::z] = start.vz_m_s;
+    point.velocity[plane::arm] = start.arm_rate_rad_s;
     return point;
 }
 
 double travel_m(const Configuration& a, const Configuration& b) noexcept {
-    const double dx = b.x_m - a.x_m;
-    const double dz = b.z_m - a.z_m;
-    return std::sqrt(dx * dx + dz * dz);
+    double squares = 0;
+    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
+        if (planar_axes[axis].group == AxisGroup::translation) {
+            const double way = b[axis] - a[axis];
+            squares += way * way;
+        }
+    }
+    return std::sqrt(squares);
 }
 
 Configuration between(const Configuration& a, const Configuration& b, double s) noexcept {
-    return {a.x_m + s * (b.x_m - a.x_m), a.z_m + s * (b.z_m - a.z_m), a.arm_rad + s * (b.arm_rad - a.arm_rad)};
+    Configuration c;
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+        c[axis] = a[axis] + s * (b[axis] - a[axis]);
+    }
+    return c;
 }
+
+namespace {
+
+std::vector<SearchAxis> search_axes(const Bounds& bounds, const ArmParameters& arm) {
+    const bool wraps = !arm.is_limited;
+    return {{AxisGroup::translation, bounds.x_low_m, bounds.x_high_m, 1, false},
+            {AxisGroup::translation, bounds.z_low_m, bounds.z_high_m, 1, false},
+            {AxisGroup::joint, wraps ? -std::numbers::pi : arm.lower_limit_rad,
+             wraps ? std::numbers::pi : arm.upper_limit_rad, 0.5 * arm.length_m, wraps}};
+}
+
+}  // namespace
 
 SearchSpace::SearchSpace(const Problem& problem, const FlightModel& model)
     : model_(model),
-      bounds_(problem.bounds),
+      axes_(search_axes(problem.bounds, problem.robot.arm)),
       goal_(problem.goal),
-      arm_(problem.robot.arm),
+      arm_weight_m_(0.5 * problem.robot.arm.length_m),
       margin_m_(problem.planner.safety_margin_m) {}
 
-double SearchSpace::arm_low_rad() const noexcept {
-    return arm_.is_limited ? arm_.lower_limit_rad : -std::numbers::pi;
+double SearchSpace::way(std::size_t axis, double from, double to) const noexcept {
+    return axes_[axis].wraps ? lane::wrap_angle(to - from) : to - from;
 }
 
-double SearchSpace::arm_high_rad() const noexcept {
-    return arm_.is_limited ? arm_.upper_limit_rad : std::numbers::pi;
-}
-
-double SearchSpace::arm_turn_rad(double from_rad, double to_rad) const noexcept {
-    return arm_.is_limited ? to_rad - from_rad : lane::wrap_angle(to_rad - from_rad);
+double SearchSpace::turn_rad(const Configuration& from, const Configuration& to) const noexcept {
+    double largest = 0;
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+        if (axes_[axis].group == AxisGroup::joint) {
+            largest = std::max(largest, std::abs(way(axis, from[axis], to[axis])));
+        }
+    }
+    return largest;
 }
 
 Configuration SearchSpace::seen_from(const Configuration& from, Configuration to) const noexcept {
-    to.arm_rad = from.arm_rad + arm_turn_rad(from.arm_rad, to.arm_rad);
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+        if (axes_[axis].group == AxisGroup::joint) {
+            to[axis] = from[axis] + way(axis, from[axis], to[axis]);
+        }
+    }
     return to;
 }
 
 double SearchSpace::distance_m(const Configuration& a, const Configuration& b) const noexcept {
-    const double dx = b.x_m - a.x_m;
-    const double dz = b.z_m - a.z_m;
-    const double turn = arm_weight_m() * arm_turn_rad(a.arm_rad, b.arm_rad);
-    return std::sqrt(dx * dx + dz * dz + turn * turn);
+    return std::sqrt(squared_distance_m2(a, b, HUGE_VAL));
+}
+
+double SearchSpace::squared_distance_m2(const Configuration& a, const Configuration& b,
+                                        double enough_m2) const noexcept {
+    double squares = 0;
+    for (std::size_t axis = 0; axis < axes_.size() && squares < enough_m2; ++axis) {
+        const double length_m = axes_[axis].weight_m * way(axis, a[axis], b[axis]);
+        squares += length_m * length_m;
+    }
+    return squares;
 }
 
 Configuration SearchSpace::steered(const Configuration& from, const Configuration& to, double range_m) const {
@@ -72,30 +106,32 @@ Configuration SearchSpace::steered(const Configuration& from, const Configuratio
 
 Configuration SearchSpace::sample(Random& random) const {
     Configuration c;
-    c.x_m = random.uniform(bounds_.x_low_m, bounds_.x_high_m);
-    c.z_m = random.uniform(bounds_.z_low_m, bounds_.z_high_m);
-    c.arm_rad = random.uniform(arm_low_rad(), arm_high_rad());
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+        c[axis] = random.uniform(axes_[axis].low, axes_[axis].high);
+    }
     return c;
 }
 
 double SearchSpace::into_arm_range(double arm_rad, double near_rad) const noexcept {
     constexpr double turn = 2 * std::numbers::pi;
-    const double least = arm_rad - turn * std::floor((arm_rad - arm_low_rad()) / turn);
-    const double turns_to_spare = std::floor((arm_high_rad() - least) / turn);
-    if (!arm_.is_limited || turns_to_spare < 1) {
+    const SearchAxis& arm = axes_[plane::arm];
+    const double least = arm_rad - turn * std::floor((arm_rad - arm.low) / turn);
+    const double turns_to_spare = std::floor((arm.high - least) / turn);
+    if (arm.wraps || turns_to_spare < 1) {
         return least;
     }
     return least + turn * std::clamp(std::round((near_rad - least) / turn), 0.0, turns_to_spare);
 }
 
 Configuration SearchSpace::sample_near(const Configuration& configuration, double radius_m, Random& random) const {
-    const double turn = radius_m / arm_weight_m();
     Configuration c;
-    c.x_m = std::clamp(configuration.x_m + random.uniform(-radius_m, radius_m), bounds_.x_low_m, bounds_.x_high_m);
-    c.z_m = std::clamp(configuration.z_m + random.uniform(-radius_m, radius_m), bounds_.z_low_m, bounds_.z_high_m);
-    c.arm_rad = configuration.arm_rad + random.uniform(-turn, turn);
-    if (arm_.is_limited) {
-        c.arm_rad = std::clamp(c.arm_rad, arm_.lower_limit_rad, arm_.upper_limit_rad);
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const SearchAxis& axis = axes_[i];
+        const double radius = radius_m / axis.weight_m;
+        c[i] = configuration[i] + random.uniform(-radius, radius);
+        if (!axis.wraps) {
+            c[i] = std::clamp(c[i], axis.low, axis.high);
+        }
     }
     return c;
 }
@@ -120,7 +156,7 @@ Configuration SearchSpace::moved_to(const Goal& goal, Configuration c, Random& r
     const double dz = random.uniform(-1, 1);
     const double turn = tolerance.usable().angle_rad * random.uniform(-1, 1);
     if (const std::optional<double> angle_rad = level_arm_rad(goal)) {
-        c.arm_rad = into_arm_range(*angle_rad + (goal.end_effector || is_beside ? turn : 0), c.arm_rad);
+        c[plane::arm] = into_arm_range(*angle_rad + (goal.end_effector || is_beside ? turn : 0), c[plane::arm]);
     }
     const double radius = tolerance.is_disc ? std::max(1.0, std::sqrt(dx * dx + dz * dz)) : 1;
     const GoalTolerance beside = tolerance.times(is_beside ? usable_tolerance_share / radius : 0);
@@ -134,8 +170,8 @@ Configuration SearchSpace::moved_into_goal(Configuration c, double share) const 
 Configuration SearchSpace::moved_into(const Goal& goal, Configuration c, double share) const {
     const GoalTolerance limit = tolerance_of(goal).times(share);
     if (const std::optional<double> angle_rad = level_arm_rad(goal)) {
-        const double turn = std::clamp(lane::wrap_angle(c.arm_rad - *angle_rad), -limit.angle_rad, limit.angle_rad);
-        c.arm_rad = into_arm_range(*angle_rad + turn, c.arm_rad);
+        const double turn = std::clamp(lane::wrap_angle(c[plane::arm] - *angle_rad), -limit.angle_rad, limit.angle_rad);
+        c[plane::arm] = into_arm_range(*angle_rad + turn, c[plane::arm]);
     }
     const GoalDeviation d = goal_deviation(goal, model_.tick().plant, level_at(c));
     if (!limit.is_disc) {
@@ -197,28 +233,31 @@ GoalError SearchSpace::error_beyond_tolerance(const Goal& goal, const Configurat
 }
 
 Rejection SearchSpace::limit_left_at(const Configuration& c) const noexcept {
-    if (!(c.x_m >= bounds_.x_low_m && c.x_m <= bounds_.x_high_m && c.z_m >= bounds_.z_low_m &&
-          c.z_m <= bounds_.z_high_m)) {
-        return Rejection::bounds;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+        const SearchAxis& axis = axes_[i];
+        if (!axis.wraps && !(c[i] >= axis.low && c[i] <= axis.high)) {
+            return axis.group == AxisGroup::translation ? Rejection::bounds : Rejection::arm_limits;
+        }
     }
-    const bool keeps_arm_limits =
-        !arm_.is_limited || (c.arm_rad >= arm_.lower_limit_rad && c.arm_rad <= arm_.upper_limit_rad);
-    return keeps_arm_limits ? Rejection::none : Rejection::arm_limits;
+    return Rejection::none;
 }
 
 Rejection SearchSpace::rejection_at(const Configuration& c, double pitch_rad) const {
     if (const Rejection left = limit_left_at(c); left != Rejection::none) {
         return left;
     }
-    const PlanarPose pose{c.x_m, c.z_m, pitch_rad, c.arm_rad};
+    PlanarPose pose = level_at(c);
+    pose.pitch_rad = pitch_rad;
     return model_.collisions().is_nearer_than(pose, margin_m_) ? Rejection::collision : Rejection::none;
 }
 
 double SearchSpace::extent_m() const noexcept {
-    const double dx = bounds_.x_high_m - bounds_.x_low_m;
-    const double dz = bounds_.z_high_m - bounds_.z_low_m;
-    const double turn = arm_weight_m() * (arm_.is_limited ? arm_high_rad() - arm_low_rad() : std::numbers::pi);
-    return std::sqrt(dx * dx + dz * dz + turn * turn);
+    double squares = 0;
+    for (const SearchAxis& axis : axes_) {
+        const double length_m = axis.weight_m * (axis.wraps ? std::numbers::pi : axis.high - axis.low);
+        squares += length_m * length_m;
+    }
+    return std::sqrt(squares);
 }
 
 }  // namespace downwash::planning

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "downwash/controllers/configuration.hpp"
 #include "downwash/problems/problem.hpp"
@@ -19,32 +21,44 @@ namespace downwash::planning {
 /// The point at the share s of the straight line from a to b, arm angles taken as they stand.
 [[nodiscard]] Configuration between(const Configuration& a, const Configuration& b, double s) noexcept;
 
+/// An axis as a search sees it.
+struct SearchAxis {
+    AxisGroup group;
+    double low, high;  ///< its values; of an axis that wraps one turn of them [m or rad]
+    double weight_m;   ///< metres that a unit of it counts for in distances
+    bool wraps;        ///< values a turn apart are the same place
+
+    /// Whether there is but one value.
+    [[nodiscard]] bool is_fixed() const noexcept { return low == high; }
+};
+
 /// The space of configurations of one problem: distances, samples, goals and collisions of the level vehicle.
 class SearchSpace {
  public:
     SearchSpace(const Problem& problem, const FlightModel& model);
 
-    [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
     [[nodiscard]] const Goal& goal() const noexcept { return goal_; }
-    [[nodiscard]] bool arm_is_limited() const noexcept { return arm_.is_limited; }
-    /// Whether its limits leave the arm but one angle.
-    [[nodiscard]] bool arm_is_fixed() const noexcept {
-        return arm_.is_limited && arm_.lower_limit_rad == arm_.upper_limit_rad;
-    }
-    [[nodiscard]] double arm_low_rad() const noexcept;
-    [[nodiscard]] double arm_high_rad() const noexcept;
+    /// The axes in the order of a configuration's coordinates.
+    [[nodiscard]] std::span<const SearchAxis> axes() const noexcept { return axes_; }
 
     /// Metres that one radian of the arm counts for: half the arm's length.
-    [[nodiscard]] double arm_weight_m() const noexcept { return 0.5 * arm_.length_m; }
+    [[nodiscard]] double arm_weight_m() const noexcept { return arm_weight_m_; }
 
-    /// Turn from one arm angle to another [rad]: the shorter way, unless the arm has limits.
-    [[nodiscard]] double arm_turn_rad(double from_rad, double to_rad) const noexcept;
+    /// The way from one value of an axis to another [m or rad]: the shorter one where the axis wraps.
+    [[nodiscard]] double way(std::size_t axis, double from, double to) const noexcept;
 
-    /// `to` with its arm angle unwrapped so that it is reached from `from` by the shorter turn.
+    /// The largest turn of any joint between two configurations [rad], >= 0.
+    [[nodiscard]] double turn_rad(const Configuration& from, const Configuration& to) const noexcept;
+
+    /// `to` with the angles that wrap unwrapped so that they are reached from `from` by the shorter turn.
     [[nodiscard]] Configuration seen_from(const Configuration& from, Configuration to) const noexcept;
 
-    /// sqrt(dx^2 + dz^2 + (w darm)^2) [m], the arm by the shorter turn.
+    /// The square root of the weighted squares of the ways along all axes [m]: sqrt(dx^2 + dz^2 + (w darm)^2).
     [[nodiscard]] double distance_m(const Configuration& a, const Configuration& b) const noexcept;
+
+    /// The square of distance_m() [m2], or some smaller number of at least `enough_m2`.
+    [[nodiscard]] double squared_distance_m2(const Configuration& a, const Configuration& b,
+                                             double enough_m2) const noexcept;
 
     /// The point at most `range_m` from `from` on the straight line towards `to`.
     [[nodiscard]] Configuration steered(const Configuration& from, const Configuration& to, double range_m) const;
@@ -105,14 +119,14 @@ class SearchSpace {
  private:
     [[nodiscard]] Configuration moved_to(const Goal& goal, Configuration configuration, Random& random) const;
     [[nodiscard]] Configuration moved_into(const Goal& goal, Configuration configuration, double share) const;
-    /// The same direction of the arm as an angle within its limits, of several the one nearest to another angle; where
-    /// none is within, and without limits, the least that is no smaller than arm_low_rad().
+    /// A direction of the arm as an angle within its limits, of several the one nearest to another angle; where none is
+    /// within, and without limits, the least that is no smaller than the low end of its range.
     [[nodiscard]] double into_arm_range(double arm_rad, double near_rad) const noexcept;
 
     const FlightModel& model_;
-    Bounds bounds_;
+    std::vector<SearchAxis> axes_;
     Goal goal_;
-    ArmParameters arm_;
+    double arm_weight_m_;
     double margin_m_;
 };
 

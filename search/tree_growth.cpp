@@ -23,20 +23,24 @@ std::vector<FlightNode*> with_ancestors(const std::vector<FlightNode*>& nodes) {
     return all;
 }
 
-/// From the straight lines between the points of a way, in the plane of motion.
+/// The distance of a place from the straight lines between the points of a way [m].
 double distance_from_way_m(const Configuration& place, const std::vector<ReferencePoint>& way) {
+    constexpr std::size_t translations[] = {plane::x, plane::z};
     double nearest_m = HUGE_VAL;
     for (std::size_t i = 1; i < way.size(); ++i) {
-        const double* a = way[i - 1].position;
-        const double* b = way[i].position;
-        const double dx = b[0] - a[0];
-        const double dz = b[1] - a[1];
-        const double length2 = dx * dx + dz * dz;
-        const double along =
-            length2 > 0 ? std::clamp(((place.x_m - a[0]) * dx + (place.z_m - a[1]) * dz) / length2, 0.0, 1.0) : 0;
-        const double off_x = place.x_m - a[0] - along * dx;
-        const double off_z = place.z_m - a[1] - along * dz;
-        nearest_m = std::min(nearest_m, std::sqrt(off_x * off_x + off_z * off_z));
+        const Configuration a = configuration_of(way[i - 1]);
+        const Configuration b = configuration_of(way[i]);
+        double length2 = 0, projection = 0, off2 = 0;
+        for (const std::size_t axis : translations) {
+            length2 += (b[axis] - a[axis]) * (b[axis] - a[axis]);
+            projection += (place[axis] - a[axis]) * (b[axis] - a[axis]);
+        }
+        const double along = length2 > 0 ? std::clamp(projection / length2, 0.0, 1.0) : 0;
+        for (const std::size_t axis : translations) {
+            const double off = place[axis] - a[axis] - along * (b[axis] - a[axis]);
+            off2 += off * off;
+        }
+        nearest_m = std::min(nearest_m, std::sqrt(off2));
     }
     return nearest_m;
 }
@@ -204,7 +208,8 @@ void TreeGrowth::choose_parents(std::vector<Growth>& batch) {
                 continue;
             }
             ReferencePoint to = growth.to;
-            to.position[2] = space_.seen_from(parent.node->configuration, configuration_of(to)).arm_rad;
+            const Configuration seen = space_.seen_from(parent.node->configuration, configuration_of(to));
+            std::copy(seen.coordinate.begin(), seen.coordinate.end(), to.position);
             edges.push_back({parent.node, to});
             growths.push_back(&growth);
         }

@@ -75,8 +75,7 @@ std::vector<TreeNode> tree_of(const ob::Planner& planner, const std::function<Co
     for (unsigned int i = 0; i < data.numVertices(); ++i) {
         if (const int parent = parents.of(i); parent != unseen) {
             const Configuration at = place(data.getVertex(i).getState());
-            tree.push_back({{at.x_m, at.z_m, at.arm_rad},
-                            parent < 0 ? TreeNode::no_parent : index[static_cast<std::size_t>(parent)]});
+            tree.push_back({at, parent < 0 ? TreeNode::no_parent : index[static_cast<std::size_t>(parent)]});
         }
     }
     return tree;

@@ -72,11 +72,12 @@ std::optional<double> level_arm_rad(const Goal& goal) noexcept {
 
 Configuration placed_at(const Goal& goal, const PlantModel& model, Configuration c, double dx_m, double dz_m) {
     if (goal.end_effector) {
-        const auto tip = dynamics::end_effector_position(model, dynamics::attitude(model, 0.0, c.arm_rad), 0.0, 0.0);
-        return {goal.end_effector->x_m + dx_m - tip.x, goal.end_effector->z_m + dz_m - tip.z, c.arm_rad};
+        const auto tip =
+            dynamics::end_effector_position(model, dynamics::attitude(model, 0.0, c[plane::arm]), 0.0, 0.0);
+        return {goal.end_effector->x_m + dx_m - tip.x, goal.end_effector->z_m + dz_m - tip.z, c[plane::arm]};
     }
     const ConfigurationGoal& pose = *goal.configuration;
-    return {pose.x_m ? *pose.x_m + dx_m : c.x_m, pose.z_m ? *pose.z_m + dz_m : c.z_m, c.arm_rad};
+    return {pose.x_m ? *pose.x_m + dx_m : c[plane::x], pose.z_m ? *pose.z_m + dz_m : c[plane::z], c[plane::arm]};
 }
 
 GoalError goal_error(const Goal& goal, const PlantModel& model, const PlanarPose& pose) {

@@ -7,7 +7,7 @@ namespace downwash {
 
 /// The level vehicle at a configuration.
 [[nodiscard]] inline PlanarPose level_at(const Configuration& at) noexcept {
-    return {at.x_m, at.z_m, 0, at.arm_rad};
+    return {at[plane::x], at[plane::z], 0, at[plane::arm]};
 }
 
 /// The pose with coordinates q = (x, z, pitch, arm) [m, m, rad, rad].

@@ -164,7 +164,7 @@ void batch(benchmark::State& state, Model model, Instructions instructions, int 
     for (std::size_t i = 0; edges.size() < 512; ++i) {
         const Configuration at{from[i].x_m, from[i].z_m, from[i].arm_rad};
         if (!vehicle->collisions().is_nearer_than(level_at(at), rules.margin_m)) {
-            const Configuration to{at.x_m + 20 * from[i].pitch_rad, at.z_m, at.arm_rad + 0.5};
+            const Configuration to{at[plane::x] + 20 * from[i].pitch_rad, at[plane::z], at[plane::arm] + 0.5};
             edges.push_back({vehicle->state_at(level_at(at)), {{{at_rest(at), at_rest(to), 800, tick_s}}}});
             if (model == Model::worlds) {
                 FlightJob& edge = edges.back();

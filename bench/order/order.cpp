@@ -143,11 +143,7 @@ Legs flown_legs(const Problem& problem, const Options& options, const SolveOptio
             const Solution found = solve(leg, how);
             if (found.status == Status::solved && found.execution_cost < cost) {
                 cost = found.execution_cost;
-                const Configuration end = found.plan->last();
-                hovers[to] = {};
-                hovers[to].x_m = end.x_m;
-                hovers[to].z_m = end.z_m;
-                hovers[to].arm_rad = end.arm_rad;
+                hovers[to] = Start::resting_at(found.plan->last());
             }
         }
         return cost;

@@ -185,7 +185,8 @@ class Mission {
 
     void say(const std::string& reason, Advice advice, const Plan& plan) const {
         std::printf("%8.2f s  target %zu, %s: %s, %.2f s to (%.3f, %.3f) m\n", now_s(), target_ + 1, reason.c_str(),
-                    std::string(name_of(advice)).c_str(), plan.duration_s(), plan.last().x_m, plan.last().z_m);
+                    std::string(name_of(advice)).c_str(), plan.duration_s(), plan.last()[plane::x],
+                    plan.last()[plane::z]);
         std::fflush(stdout);
     }
 

@@ -14,15 +14,12 @@ constexpr int timeout_s = 2;
 json columns_of(const downwash::Plan& plan) {
     json columns;
     for (const downwash::ReferenceKnot& knot : plan.reference) {
-        const auto& [position, velocity, acceleration] = knot.point;
         columns["t_s"].push_back(static_cast<double>(knot.tick) * plan.tick_s);
-        const char* const names[3][3] = {{"x_m", "vx_m_s", "ax_m_s2"},
-                                         {"z_m", "vz_m_s", "az_m_s2"},
-                                         {"arm_rad", "arm_rate_rad_s", "arm_acceleration_rad_s2"}};
-        for (int axis = 0; axis < 3; ++axis) {
-            columns[names[axis][0]].push_back(position[axis]);
-            columns[names[axis][1]].push_back(velocity[axis]);
-            columns[names[axis][2]].push_back(acceleration[axis]);
+        for (std::size_t i = 0; i < plan.axes.size(); ++i) {
+            const downwash::Axis& axis = plan.axes[i];
+            columns[std::string(axis.position)].push_back(knot.point.position[i]);
+            columns[std::string(axis.velocity)].push_back(knot.point.velocity[i]);
+            columns[std::string(axis.acceleration)].push_back(knot.point.acceleration[i]);
         }
     }
     return columns;

@@ -39,7 +39,7 @@ void step(const ClosedLoopOde& ode, const double velocity[3], double dt_s, std::
 double worst_difference(const FlightModel& model, const AeroMap* map, const Configuration& from,
                         double& greatest_factor) {
     const ClosedLoopOde ode(model, map);
-    std::vector<double> state = Ode::resting_at(from.x_m, from.z_m, from.arm_rad);
+    std::vector<double> state = Ode::resting_at(from[plane::x], from[plane::z], from[plane::arm]);
     FlightState vehicle = model.state_at(level_at(from));
     const double velocity[3] = {0.3, -0.05, 0.2};
     double worst = 0;

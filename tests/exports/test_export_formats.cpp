@@ -115,10 +115,12 @@ TEST_CASE("a mission lies where the scene does") {
         const Configuration corner = configuration_of(run.plan->reference[i].point);
         const json& params = items[i]["params"];
         const double angle_rad = bearing_deg / 57.295779513082320877;
-        CHECK((params[4].get<double>() - 47) * latitude_m == Approx(corner.x_m * std::cos(angle_rad)).margin(0.01));
-        CHECK((params[5].get<double>() - 8) * longitude_m == Approx(corner.x_m * std::sin(angle_rad)).margin(0.01));
-        const double sagitta_m = corner.x_m * corner.x_m / (2 * earth_radius_m);
-        CHECK(params[6].get<double>() == Approx(corner.z_m + sagitta_m).margin(1e-7));
+        CHECK((params[4].get<double>() - 47) * latitude_m ==
+              Approx(corner[plane::x] * std::cos(angle_rad)).margin(0.01));
+        CHECK((params[5].get<double>() - 8) * longitude_m ==
+              Approx(corner[plane::x] * std::sin(angle_rad)).margin(0.01));
+        const double sagitta_m = corner[plane::x] * corner[plane::x] / (2 * earth_radius_m);
+        CHECK(params[6].get<double>() == Approx(corner[plane::z] + sagitta_m).margin(1e-7));
         CHECK(items[i]["Altitude"] == params[6]);
         CHECK(params[3].get<double>() == Approx(bearing_deg).margin(1e-9));
         CHECK(items[i]["doJumpId"] == i + 1);

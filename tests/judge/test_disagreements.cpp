@@ -65,7 +65,7 @@ TEST_CASE("A plan that contradicts nothing is not contradicted") {
 TEST_CASE("A plan that contradicts itself or its problem is found out") {
     Case bad;
     SECTION("by a waypoint that is not where the reference is") {
-        bad.claims.waypoints[1].z_m += 1e-6;
+        bad.claims.waypoints[1][plane::z] += 1e-6;
         CHECK(bad.in_plan() == Names{"plan.waypoints[1].z_m"});
     }
     SECTION("by a missing waypoint") {

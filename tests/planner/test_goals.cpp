@@ -80,7 +80,7 @@ struct ScriptedTour {
                                         : outcome == PartOutcome::hopeless ? 0
                                                                            : 10;
             const Configuration start = part.start.configuration();
-            found.plan = Plan{{{0, at_rest(start)}, {500, at_rest({start.x_m + 1, 2, 0})}}, model->tick().tick_s};
+            found.plan = Plan{{{0, at_rest(start)}, {500, at_rest({start[plane::x] + 1, 2, 0})}}, model->tick().tick_s};
             found.cost = 1;
             found.status = outcome == PartOutcome::found ? Status::solved : Status::approximate;
             return outcome == PartOutcome::first_part_is_weak ? std::optional<std::size_t>(0) : std::nullopt;
@@ -103,7 +103,7 @@ TEST_CASE("a tour goes back to the part that is to blame, which is searched with
     CHECK(tour.solution.status == Status::solved);
     CHECK(tour.solution.cost == 3);
     CHECK(tour.solution.planning.iterations == 60);
-    CHECK(tour.solution.plan->last().x_m == -1);  // three parts of a metre each, whatever was found before
+    CHECK(tour.solution.plan->last()[plane::x] == -1);  // three parts of a metre each, whatever was found before
 }
 
 TEST_CASE("a part of a tour that takes too long is searched anew, the second time from another place, for longer") {

@@ -133,7 +133,7 @@ TEST_CASE("where nothing but a stop is safe it stops, and where nothing is it sa
     SceneChange change;  // a wall from the ground to the ceiling
     change.put.push_back(test::box("wall", {0.4, 6, 4.9}, {here.x_m + room_m + 0.2, 0, 2.5}));
     const Answer answer = planner.replan(here, tick, change, iterations(100));
-    Goal anywhere = test::configuration_goal(answer.plan.last().x_m, answer.plan.last().z_m);
+    Goal anywhere = test::configuration_goal(answer.plan.last()[plane::x], answer.plan.last()[plane::z]);
     anywhere.configuration->tolerance_m = 1;
     const Execution flight =
         execute(planner.model(), start_state(planner.model(), here), answer.plan.reference, anywhere, true);
@@ -193,7 +193,7 @@ TEST_CASE("obstacles that went, and goals that moved, are planned for") {
     const Start here = midway(planner, tick);
     const Answer elsewhere = planner.replan(here, tick, goal, iterations(300));
     REQUIRE(elsewhere.advice == Advice::follow);
-    CHECK(std::abs(elsewhere.plan.last().x_m + 1) < 0.2);
+    CHECK(std::abs(elsewhere.plan.last()[plane::x] + 1) < 0.2);
 }
 
 TEST_CASE("goals that were visited are not visited again") {

@@ -379,7 +379,7 @@ TEST_CASE("a search without a plan says how near it came and what stopped it") {
     CHECK(*walled.planning.nearest_approach_m > 0.15);  // not beyond the wall, 0.15 m thick on this side
     REQUIRE(walled.planning.obstruction);
     CHECK(walled.planning.obstruction->cause == "collision");
-    CHECK(walled.planning.obstruction->at.x_m < 0);  // touching the wall from the side of the start
+    CHECK(walled.planning.obstruction->at[plane::x] < 0);  // touching the wall from the side of the start
 
     const Solution sucked_in = solve(right_under_the_ceiling());
     CHECK(sucked_in.status != Status::solved);
@@ -417,7 +417,7 @@ TEST_CASE("where every plan was discarded, the direct flight is what stopped the
     CHECK(solution.planning.rejected.at("direct_flight") > 0);
     REQUIRE(solution.planning.obstruction);
     CHECK(solution.planning.obstruction->cause == "direct_flight");
-    CHECK(solution.planning.obstruction->at.z_m > 4);
+    CHECK(solution.planning.obstruction->at[plane::z] > 4);
 }
 
 TEST_CASE("a plan that is cheaper in the planner's model only, and not when flown, is no improvement") {
@@ -456,7 +456,7 @@ TEST_CASE("where a surface saves energy the aware planner flies and holds along 
         CHECK(aware.execution->outcome == Outcome::ok);
         aware_j.push_back(aware.execution->energy_j);
         unaware_j.push_back(unaware.execution->energy_j);
-        below_the_deck += aware.plan->last().z_m > 4.4 ? 1 : 0;
+        below_the_deck += aware.plan->last()[plane::z] > 4.4 ? 1 : 0;
     }
     std::sort(aware_j.begin(), aware_j.end());
     std::sort(unaware_j.begin(), unaware_j.end());

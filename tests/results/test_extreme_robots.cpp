@@ -126,7 +126,7 @@ Solution flown_by(const Robot& robot, const Problem& problem) {
     const auto model = make_flight_model(other);
     const double tick_s = model->tick().tick_s;
     const Configuration start = problem.start.configuration();
-    const Configuration goal{start.x_m + 0.5, start.z_m + 0.5, start.arm_rad};
+    const Configuration goal{start[plane::x] + 0.5, start[plane::z] + 0.5, start[plane::arm]};
     Solution solution;
     solution.status = Status::solved;
     solution.algorithm = "rrt-star";

@@ -85,9 +85,9 @@ TEST_CASE("the place of rest is where braking step by step ends") {
         for (; point.velocity[0] != 0 || point.velocity[1] != 0 || point.velocity[2] != 0; ++braked) {
             point = steps.after(point, still);
         }
-        CHECK(rest.x_m == Approx(point.position[0]).margin(1e-12));
-        CHECK(rest.z_m == Approx(point.position[1]).margin(1e-12));
-        CHECK(rest.arm_rad == Approx(point.position[2]).margin(1e-12));
+        CHECK(rest[plane::x] == Approx(point.position[0]).margin(1e-12));
+        CHECK(rest[plane::z] == Approx(point.position[1]).margin(1e-12));
+        CHECK(rest[plane::arm] == Approx(point.position[2]).margin(1e-12));
         CHECK(ticks == 50 * braked);
     }
     CHECK(steps.braking_ticks(ReferencePoint{}) == 0);

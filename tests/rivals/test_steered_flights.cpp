@@ -132,8 +132,8 @@ TEST_CASE("a plan without an end is braked to rest") {
     }
     const Plan plan = f.steered.plan(moments, {});
     CHECK(plan.reference.back().point.velocity[0] == 0);
-    CHECK(plan.last().x_m == Approx(moments.back().rest.x_m));
-    CHECK(plan.last().arm_rad == Approx(moments.back().rest.arm_rad));
+    CHECK(plan.last()[plane::x] == Approx(moments.back().rest[plane::x]));
+    CHECK(plan.last()[plane::arm] == Approx(moments.back().rest[plane::arm]));
 }
 
 TEST_CASE("OMPL propagates what steps fly, and ends before the step that is rejected") {

@@ -76,7 +76,7 @@ TEST_CASE("without passages the tree does not come through a gap as wide as the 
             static_cast<void>(growth.grow({}));
         }
         for (const planning::FlightNode* node : growth.tree().nodes()) {
-            lowest = std::min(lowest, node->configuration.z_m);
+            lowest = std::min(lowest, node->configuration[plane::z]);
         }
         return lowest;
     };

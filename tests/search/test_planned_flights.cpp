@@ -77,7 +77,7 @@ TEST_CASE("of two rejected ways to the goal the one that came nearer is told") {
         const Obstruction& told = f.flights.statistics().obstruction.value();
         CHECK(told.cause == "collision");
         CHECK((told.at == first.at) == near_first);
-        CHECK(told.at.z_m == Approx(3.6).margin(1e-9));
+        CHECK(told.at[plane::z] == Approx(3.6).margin(1e-9));
         CHECK(f.flights.statistics().rejections == 2);
         CHECK(f.flights.statistics().rejected.at("collision") == 2);
     }
@@ -97,8 +97,8 @@ TEST_CASE("a flight that comes nearer than the margin is rejected") {
     const auto rejection_with = [&](double margin_m) {
         Problem problem = test::ceiling_problem();
         problem.planner.safety_margin_m = margin_m;
-        problem.start.z_m = from.z_m;
-        problem.start.arm_rad = from.arm_rad;
+        problem.start.z_m = from[plane::z];
+        problem.start.arm_rad = from[plane::arm];
         Fixture f(std::move(problem));
         FlightJob job{f.task.start, {{f.segment(from, to)}}, 0};
         f.flights.fly({&job, 1});
@@ -177,7 +177,7 @@ TEST_CASE("an arm that does not move stays at its angle in flight") {
     f.flights.fly({&job, 1});
     REQUIRE(job.rejection() == Rejection::none);
     // The joint holds it against the vehicle's accelerations.
-    CHECK(std::abs(configuration_of(job.legs.back().end.plant.q).arm_rad) < 1e-3);
+    CHECK(std::abs(configuration_of(job.legs.back().end.plant.q)[plane::arm]) < 1e-3);
 
     CHECK(f.flights.is_worth_flying(f.segment({-4, 2, 0}, {-2, 3, 0})));
     CHECK_FALSE(f.flights.is_worth_flying(f.segment({-4, 2, 0}, {-4, 2, 0.3})));

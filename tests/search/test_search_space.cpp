@@ -37,20 +37,20 @@ TEST_CASE(
     "allows") {
     const Fixture f(test::ceiling_problem());  // the tip to (3, 4.8), an arm of 1.2 m
     const Configuration up = f.space.moved_into_goal({1, 1, -pi / 2}, 0);
-    CHECK(up.x_m == Approx(3));
-    CHECK(up.z_m == Approx(3.6));
-    CHECK(up.arm_rad == -pi / 2);
+    CHECK(up[plane::x] == Approx(3));
+    CHECK(up[plane::z] == Approx(3.6));
+    CHECK(up[plane::arm] == -pi / 2);
     const Configuration forward = f.space.moved_into_goal({1, 1, 0}, 0);
-    CHECK(forward.x_m == Approx(1.8));
-    CHECK(forward.z_m == Approx(4.8));
+    CHECK(forward[plane::x] == Approx(1.8));
+    CHECK(forward[plane::z] == Approx(4.8));
     const Fixture wide(with_configuration_goal());  // (2, 3) within 0.5 m, any arm
     const Configuration c = wide.space.moved_into_goal({2, 7, 1.25}, 0.5);
-    CHECK(c.x_m == Approx(2));
-    CHECK(c.z_m == Approx(3.25));
-    CHECK(c.arm_rad == 1.25);
+    CHECK(c[plane::x] == Approx(2));
+    CHECK(c[plane::z] == Approx(3.25));
+    CHECK(c[plane::arm] == 1.25);
     const Configuration inside = wide.space.moved_into_goal({2.1, 3.1, 1.25}, 0.5);
-    CHECK(inside.x_m == Approx(2.1));
-    CHECK(inside.z_m == Approx(3.1));
+    CHECK(inside[plane::x] == Approx(2.1));
+    CHECK(inside[plane::z] == Approx(3.1));
 }
 
 TEST_CASE("an arm that does not move is at its angle in every sample, and distances are those of the vehicle") {
@@ -65,13 +65,14 @@ TEST_CASE("an arm that does not move is at its angle in every sample, and distan
         const std::optional<Configuration> goal = f.space.sample_goal(random);
         REQUIRE(goal);
         for (const Configuration& c : {any, near, *goal, f.space.steered(any, *goal, 0.5)}) {
-            CHECK(c.arm_rad == Approx(problem.start.arm_rad).margin(1e-12));
+            CHECK(c[plane::arm] == Approx(problem.start.arm_rad).margin(1e-12));
         }
-        CHECK(f.space.distance_m(any, near) == Approx(std::hypot(any.x_m - near.x_m, any.z_m - near.z_m)));
+        CHECK(f.space.distance_m(any, near) ==
+              Approx(std::hypot(any[plane::x] - near[plane::x], any[plane::z] - near[plane::z])));
         CHECK(f.space.is_near_goal(*goal));
     }
     Configuration turned = problem.start.configuration();
-    turned.arm_rad += 1e-3;
+    turned[plane::arm] += 1e-3;
     CHECK(f.space.rejection_at(problem.start.configuration()) == Rejection::none);
     CHECK(f.space.rejection_at(turned) == Rejection::arm_limits);
 }
@@ -82,8 +83,8 @@ TEST_CASE("an arm that turns more than once reaches a direction by the shorter t
     problem.goal.end_effector->direction_rad = 250 * pi / 180;
     const Fixture f(problem);
     const double once = 250 * pi / 180, before = -110 * pi / 180;
-    CHECK(f.space.moved_into_goal({0, 2, 280 * pi / 180}, 0).arm_rad == Approx(once));
-    CHECK(f.space.moved_into_goal({0, 2, -150 * pi / 180}, 0).arm_rad == Approx(before));
+    CHECK(f.space.moved_into_goal({0, 2, 280 * pi / 180}, 0)[plane::arm] == Approx(once));
+    CHECK(f.space.moved_into_goal({0, 2, -150 * pi / 180}, 0)[plane::arm] == Approx(before));
     planning::Random random(1);
     int high = 0, low = 0;
     for (int i = 0; i < 200; ++i) {
@@ -101,10 +102,10 @@ TEST_CASE("the wanted direction of the arm is taken on to within the tolerance")
     problem.goal.end_effector->direction_rad = -pi / 2;
     problem.goal.end_effector->direction_tolerance_rad = 0.2;
     const Fixture f(problem);
-    CHECK(f.space.moved_into_goal({0, 2, 0}, 0).arm_rad == Approx(-pi / 2));
-    CHECK(f.space.moved_into_goal({0, 2, 0}, 1).arm_rad == Approx(-pi / 2 + 0.2));
-    CHECK(f.space.moved_into_goal({0, 2, pi}, 1).arm_rad == Approx(-pi / 2 - 0.2));
-    CHECK(f.space.moved_into_goal({0, 2, -1.6}, 1).arm_rad == Approx(-1.6));
+    CHECK(f.space.moved_into_goal({0, 2, 0}, 0)[plane::arm] == Approx(-pi / 2));
+    CHECK(f.space.moved_into_goal({0, 2, 0}, 1)[plane::arm] == Approx(-pi / 2 + 0.2));
+    CHECK(f.space.moved_into_goal({0, 2, pi}, 1)[plane::arm] == Approx(-pi / 2 - 0.2));
+    CHECK(f.space.moved_into_goal({0, 2, -1.6}, 1)[plane::arm] == Approx(-1.6));
 }
 
 namespace {
@@ -148,12 +149,13 @@ bool lies_within(const Goal& goal, const Configuration& c, double share) {
     };
     if (goal.end_effector) {
         const EndEffectorGoal& tip = *goal.end_effector;
-        return is_within(tip, c.x_m + 1.2 * std::cos(c.arm_rad) - tip.x_m, c.z_m - 1.2 * std::sin(c.arm_rad) - tip.z_m,
-                         c.arm_rad - tip.direction_rad.value_or(c.arm_rad), tip.direction_tolerance_rad);
+        return is_within(tip, c[plane::x] + 1.2 * std::cos(c[plane::arm]) - tip.x_m,
+                         c[plane::z] - 1.2 * std::sin(c[plane::arm]) - tip.z_m,
+                         c[plane::arm] - tip.direction_rad.value_or(c[plane::arm]), tip.direction_tolerance_rad);
     }
     const ConfigurationGoal& pose = *goal.configuration;
-    return is_within(pose, c.x_m - pose.x_m.value_or(c.x_m), c.z_m - pose.z_m.value_or(c.z_m),
-                     c.arm_rad - pose.arm_rad.value_or(c.arm_rad), pose.tolerance_rad);
+    return is_within(pose, c[plane::x] - pose.x_m.value_or(c[plane::x]), c[plane::z] - pose.z_m.value_or(c[plane::z]),
+                     c[plane::arm] - pose.arm_rad.value_or(c[plane::arm]), pose.tolerance_rad);
 }
 
 }  // namespace

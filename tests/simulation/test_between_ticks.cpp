@@ -122,8 +122,8 @@ TEST_CASE("edges fly side by side as one by one where ticks are long, rods thin 
         std::vector<FlightJob> jobs;
         while (jobs.size() < 80) {
             const Configuration from{random.uniform(-4, 4), random.uniform(1.5, 4), random.uniform(-3, 3)};
-            const Configuration to{from.x_m + random.uniform(-2, 2), from.z_m + random.uniform(-1, 1),
-                                   from.arm_rad + random.uniform(-1, 1)};
+            const Configuration to{from[plane::x] + random.uniform(-2, 2), from[plane::z] + random.uniform(-1, 1),
+                                   from[plane::arm] + random.uniform(-1, 1)};
             if (!model->collisions().is_nearer_than(level_at(from), margin_m)) {
                 jobs.push_back({model->state_at(level_at(from)),
                                 {{{at_rest(from), at_rest(to), random.integer(60, 120), model->tick().tick_s}}}});

@@ -47,7 +47,7 @@ Execution touch_from_hover(const Problem& problem, const FlightWorld& in = {}, b
     const Goal& place = problem.goal.any_of.front();
     Configuration at{0, 0, quarter_turn};
     if (place.end_effector) {
-        at.arm_rad = *place.end_effector->direction_rad;
+        at[plane::arm] = *place.end_effector->direction_rad;
     }
     at = placed_at(place, model->tick().plant, at, 0, 0);
     const std::vector<ReferenceKnot> knots{{0, at_rest(at)}};

@@ -135,7 +135,8 @@ TEST_CASE("Flights in worlds side by side are those of each alone, to the last b
     std::vector<FlightJob> jobs;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         const Configuration from{random.uniform(-1.5, 3), random.uniform(0.8, 4.5), random.uniform(-1, 2)};
-        const Configuration middle{from.x_m + random.uniform(-1, 1), from.z_m + random.uniform(-0.5, 0.5), 0.5};
+        const Configuration middle{from[plane::x] + random.uniform(-1, 1), from[plane::z] + random.uniform(-0.5, 0.5),
+                                   0.5};
         FlightJob job{model->state_at(level_at(from)), {}};
         job.legs.push_back({{at_rest(from), at_rest(middle), random.integer(200, 400), model->tick().tick_s}});
         job.legs.push_back({{at_rest(middle), at_rest(from), random.integer(200, 400), model->tick().tick_s}});

@@ -64,8 +64,8 @@ inline Problem cluttered_problem() {
 inline double tip_error_m(const Problem& problem, const Configuration& at) {
     const EndEffectorGoal& goal = *problem.goal.end_effector;
     const double arm_m = problem.robot.arm.length_m;
-    return std::hypot(at.x_m + arm_m * std::cos(at.arm_rad) - goal.x_m,
-                      at.z_m - arm_m * std::sin(at.arm_rad) - goal.z_m);
+    return std::hypot(at[plane::x] + arm_m * std::cos(at[plane::arm]) - goal.x_m,
+                      at[plane::z] - arm_m * std::sin(at[plane::arm]) - goal.z_m);
 }
 
 /// The ceiling problem with a wall across the whole space between start and goal.
