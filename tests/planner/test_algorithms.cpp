@@ -83,8 +83,8 @@ TEST_CASE("every algorithm's tree hangs together, from the start on") {
         const bool grows_two = algorithm.name == "rrt-connect";
         CHECK(roots <= (grows_two ? static_cast<std::ptrdiff_t>(solution.tree.size()) - 1 : 1));
         CHECK(std::any_of(solution.tree.begin(), solution.tree.end(), [&](const TreeNode& node) {
-            return is_root(node) && node.at.x_m == Approx(problem.start.x_m) &&
-                   node.at.z_m == Approx(problem.start.z_m);
+            return is_root(node) && node.at[plane::x] == Approx(problem.start.x_m) &&
+                   node.at[plane::z] == Approx(problem.start.z_m);
         }));
         for (const TreeNode& node : solution.tree) {
             int parent = node.parent;
@@ -116,7 +116,7 @@ TEST_CASE("no algorithm calls a walled problem solved") {
         REQUIRE(solution.planning.obstruction.has_value() == tries_ways_to_goal);
         if (tries_ways_to_goal) {
             CHECK(solution.planning.obstruction->cause == "collision");
-            CHECK(solution.planning.obstruction->at.x_m < 0);  // on this side of the wall
+            CHECK(solution.planning.obstruction->at[plane::x] < 0);  // on this side of the wall
             CHECK(solution.planning.obstruction->goal_distance_m > 1);
         }
         CHECK((solution.status == Status::approximate) == solution.plan.has_value());

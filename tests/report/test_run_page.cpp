@@ -111,8 +111,8 @@ TEST_CASE("a page carries the flight to the last bit, each column once, the solu
     REQUIRE(data["tree"]["nodes"] == tree.size());
     const std::string bytes = unpacked(data["tree"]["data"], tree.size() * 16);
     for (std::size_t i = 0; i < tree.size(); ++i) {
-        CHECK(number_at<float>(bytes, i) == static_cast<float>(tree[i].at.x_m));
-        CHECK(number_at<float>(bytes, tree.size() + i) == static_cast<float>(tree[i].at.z_m));
+        CHECK(number_at<float>(bytes, i) == static_cast<float>(tree[i].at[plane::x]));
+        CHECK(number_at<float>(bytes, tree.size() + i) == static_cast<float>(tree[i].at[plane::z]));
         CHECK(number_at<std::int32_t>(bytes, 3 * tree.size() + i) == tree[i].parent);
     }
 }

@@ -73,7 +73,7 @@ TEST_CASE("a run is read back as it was written, and as its record in memory") {
     REQUIRE(record.tree.rows() == run.solution.tree.size());
     CHECK(std::isnan(record.tree.find("parent")->at(0)));
     CHECK(record.tree.find("parent")->at(1) == run.solution.tree[1].parent);
-    CHECK(record.tree.find("arm_rad")->at(1) == run.solution.tree[1].at.arm_rad);
+    CHECK(record.tree.find("arm_rad")->at(1) == run.solution.tree[1].at[plane::arm]);
     check_same(record, run_record(run.problem, run.solution, *run.solution.execution));  // the record in memory
 }
 
