@@ -36,9 +36,9 @@ struct ColumnRange {
     std::size_t first, last;
 };
 
-/// What a layer was before a part of its scene changed.
+/// A layer before a part of its scene changed.
 struct LayerBefore {
-    ColumnRange changed;               ///< where K may be another
+    ColumnRange changed;               ///< columns in which K may differ
     const CellFlyability* flyability;  ///< of the cells of the layer, row by row
 };
 

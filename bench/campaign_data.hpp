@@ -55,10 +55,10 @@ struct CampaignPlan {
     std::vector<std::uint32_t> seeds;
     std::vector<CampaignExpectation> expectations;
     std::vector<std::string> left_out;   ///< combinations that do not exist, and why
-    std::optional<double> time_limit_s;  ///< of one search; empty: none
+    std::optional<double> time_limit_s;  ///< time limit of one search; empty: none
     bool stop_at_first_solution = false;
     std::uint64_t evaluation_worlds = 0;   ///< in which each reported plan is flown
-    std::optional<ShardPlan> shards = {};  ///< of a campaign that is run in shards
+    std::optional<ShardPlan> shards = {};  ///< the shards of a campaign that is run in shards
 
     [[nodiscard]] std::size_t run_count() const { return experiments.size() * planners.size() * seeds.size(); }
 };
@@ -99,7 +99,7 @@ struct ParameterFlights {
 struct WorldFigures {
     std::uint64_t worlds = 0;
     std::uint64_t failures = 0;
-    std::vector<ParameterFlights> alone;  ///< of every parameter that is not exact
+    std::vector<ParameterFlights> alone;  ///< flights with each parameter alone that is not exact
 
     bool operator==(const WorldFigures&) const = default;
 };
@@ -148,13 +148,14 @@ struct Run {
     double simulated_s = 0;
     std::uint64_t discarded = 0;            ///< aware plans whose direct flight failed and that were not reported
     std::vector<Improvement> improvements;  ///< their times are from the parsed problem on, too
-    std::map<std::string, std::uint64_t> rejections;     ///< edges by cause
-    std::optional<FlightFigures> flight;                 ///< of a solved run
-    std::string error;                                   ///< why it is impossible or failed
-    std::optional<CertificateFigures> certificate = {};  ///< of its plan, where the problem has an uncertainty
-    std::optional<double> first_certified_s = {};        ///< from the parsed problem; of a planner that asks for them
-    std::optional<WorldFigures> in_worlds = {};          ///< of a solved run, if the campaign evaluates plans
-    std::optional<RunMachine> made_on = {};              ///< empty in results of versions that did not record it
+    std::map<std::string, std::uint64_t> rejections;  ///< edges by cause
+    std::optional<FlightFigures> flight;              ///< figures of the flight of a solved run
+    std::string error;                                ///< why it is impossible or failed
+    std::optional<CertificateFigures> certificate =
+        {};  ///< the certificate of its plan, where the problem has an uncertainty
+    std::optional<double> first_certified_s = {};  ///< from the parsed problem; of a planner that asks for them
+    std::optional<WorldFigures> in_worlds = {};  ///< flights of a solved run in worlds, if the campaign evaluates plans
+    std::optional<RunMachine> made_on = {};      ///< empty in results of versions that did not record it
 
     [[nodiscard]] bool has_failed_flight() const {
         return status == RunStatus::solved && flight && flight->outcome != Outcome::ok;
@@ -173,7 +174,7 @@ struct SeedRange {
     std::uint32_t first = 0, last = 0;
 };
 
-/// The same seeds in the same order.
+/// Seeds by their ranges, in the same order.
 [[nodiscard]] std::vector<SeedRange> ranges_of(const std::vector<std::uint32_t>& seeds);
 
 /// "1-200 300": consecutive seeds as one range.

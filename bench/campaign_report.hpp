@@ -58,10 +58,10 @@ struct ParameterFigures {
 /// Flights of the plans in other worlds than the nominal one.
 struct WorldsFigures {
     std::size_t tested = 0;    ///< seeds whose plan was tested for a certificate
-    Share certified;           ///< of the attempted seeds
-    Spread first_certified_s;  ///< of planners that ask for certificates while they search
+    Share certified;           ///< certified among the attempted seeds
+    Spread first_certified_s;  ///< first certificates of planners that ask for them while they search
     std::size_t flown = 0;     ///< seeds whose reported plan was flown in the evaluation worlds
-    Share failed;              ///< of all these flights; interval of Clopper and Pearson (1934)
+    Share failed;              ///< failed among all these flights; interval of Clopper and Pearson (1934)
     std::vector<ParameterFigures> alone;
 
     [[nodiscard]] bool has_any() const { return tested > 0 || flown > 0; }
@@ -78,14 +78,14 @@ struct CellFigures {
     Spread first_solution_s;
     Spread verified_s;           ///< to the first plan that may be reported: that of mp-arm-ada was flown directly
     Spread answer_s;             ///< wall time of the whole run
-    Spread flown_cost;           ///< of the flights that held
+    Spread flown_cost;           ///< executed costs of the flights that held
     double min_clearance_m = 0;  ///< over all flights of solved runs; NaN without any, infinite without obstacles
     std::uint64_t discarded = 0;
     std::vector<CostAt> cost_over_time;  ///< at cost_moments_s; empty where searches stop at the first solution
-    std::vector<CostAt> cost_curve;      ///< the same at moments close enough to draw
+    std::vector<CostAt> cost_curve;      ///< costs at moments close enough to draw
     /// A step for every first solution, in the order of time; evenly chosen ones of more than max_steps.
     std::vector<SolvedAt> solved_over_time;
-    std::vector<HeldAt> held_over_cost;  ///< the same for executed costs
+    std::vector<HeldAt> held_over_cost;  ///< shares of flights that held, over executed costs
     WorldsFigures in_worlds;
     std::vector<SeedFigures> seeds;  ///< that were attempted
 };
@@ -183,12 +183,12 @@ inline constexpr double cost_moments_s[] = {0.1, 0.3, 1, 5, 30};
 /// The report as a Markdown document.
 [[nodiscard]] std::string markdown_of(const CampaignReport& report);
 
-/// The same figures as JSON (`downwash/campaign-report/v1`), with those of every seed; null for what is infinite or
-/// missing.
+/// The figures of a report as JSON (`downwash/campaign-report/v1`), with those of every seed; null for what is infinite
+/// or missing.
 [[nodiscard]] std::string json_of(const CampaignReport& report);
 
-/// The same for a page, which has to stay small: of more than a few thousand seeds and steps it has evenly chosen ones,
-/// and `seed_step` says of how many seeds one is there.
+/// The figures for a page, which has to stay small: of more than a few thousand seeds and steps it has evenly chosen
+/// ones, and `seed_step` says of how many seeds one is there.
 [[nodiscard]] std::string page_json_of(const CampaignReport& report);
 
 /// The table of a paper: LaTeX for the package booktabs, a row for every problem and planner.

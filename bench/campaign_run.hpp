@@ -28,7 +28,7 @@ struct CampaignRunOptions {
 
 /// The progress of a campaign.
 struct CampaignProgress {
-    std::size_t planned = 0;        ///< of the campaign, or of its shard
+    std::size_t planned = 0;        ///< runs of the campaign, or of its shard
     std::size_t done = 0;           ///< earlier ones included; fewer than planned after a stop
     std::size_t out_of_memory = 0;  ///< runs that ended for want of memory: not done, and repeated by the next resume
 };

@@ -160,8 +160,8 @@ class Database {
     [[noreturn]] void fail() const;
 
     std::string file_;
-    std::uint64_t max_work_ = 0;                ///< of one statement, in steps of SQLite's virtual machine
-    std::unique_ptr<std::uint64_t> work_left_;  ///< of the present one
+    std::uint64_t max_work_ = 0;                ///< most work of one statement, in steps of SQLite's virtual machine
+    std::unique_ptr<std::uint64_t> work_left_;  ///< work left to the present statement
     std::unique_ptr<sqlite3, Close> database_;
     mutable std::map<std::string, Statement, std::less<>> kept_;  ///< by their texts
 };

@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 struct Detail {
     std::size_t seed_step = 1;  ///< one of so many seeds
     std::size_t max_steps = SIZE_MAX;
-    std::size_t max_failed_seeds = SIZE_MAX;  ///< of one cause
+    std::size_t max_failed_seeds = SIZE_MAX;  ///< most seeds listed for one cause
 };
 
 Json number(double value) {

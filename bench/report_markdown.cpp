@@ -119,7 +119,7 @@ class Document {
     [[nodiscard]] std::string experiment(std::size_t number) const { return in_cell(plan_.experiments[number].name()); }
     [[nodiscard]] std::string planner(std::size_t number) const { return in_cell(plan_.planners[number].name()); }
 
-    /// Of merged shards the settings name no processor.
+    /// The settings of merged shards name no processor.
     [[nodiscard]] std::string processors() const {
         const std::size_t models = report_.processor_models();
         const std::string named = bench::setting(plan_, "processor");

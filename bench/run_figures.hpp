@@ -23,11 +23,11 @@ struct RunFigures {
     std::size_t experiment = 0, planner = 0;
     std::uint32_t seed = 0;
     RunStatus status = RunStatus::none;
-    std::optional<Outcome> outcome;  ///< of the executed flight of a solved run
+    std::optional<Outcome> outcome;  ///< outcome of the executed flight of a solved run
     std::optional<bool> is_certified;
     double wall_s = 0;
     std::optional<double> first_solution_s;
-    double flight_cost = 0, duration_s = 0, min_clearance_m = 0;  ///< of the executed flight, if there is one
+    double flight_cost = 0, duration_s = 0, min_clearance_m = 0;  ///< figures of the executed flight, if there is one
     double nearest_approach_m = 0;                                ///< NaN with a plan
     double first_certified_s = 0;                                 ///< infinite without one
     std::uint64_t discarded = 0;

@@ -33,10 +33,10 @@ class SavedCopy {
     /// @throws CampaignError, DatabaseError, also where the copy has become that of another campaign or shard
     void save();
 
-    /// The same, at most every few minutes. If it fails, it tries again later.
+    /// Saves the copy, at most every few minutes. If that fails, it tries again later.
     void save_now_and_then();
 
-    /// The same, where the error that ends the campaign is another one.
+    /// Saves the copy where the error that ends the campaign is another one.
     void save_if_possible();
 
  private:

@@ -19,8 +19,8 @@ class DOWNWASH_EXPORT CollisionChecker {
     /// @throws InputError when a body or the arm has a size that is not finite and positive; keys as in RobotShape
     CollisionChecker(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane, const RobotShape& robot);
 
-    /// True if a body of the robot is nearer than `margin_m` (>= 0) to an obstacle, or touches it. Never false if it
-    /// is; true is certain but for 1e-8 m.
+    /// Whether a body of the robot is nearer than `margin_m` (>= 0) to an obstacle, or touches it. Every such pose is
+    /// found; a pose up to 1e-8 m farther away may be reported too.
     [[nodiscard]] bool is_nearer_than(const PlanarPose& pose, double margin_m) const;
 
     /// No point of the multirotor's bodies is farther from its centre of mass [m].

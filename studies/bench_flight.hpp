@@ -22,8 +22,8 @@ struct BenchExperiment {
     double rate_ki = 0;     ///< integral of the pitch rate error [1/s2]
     double observer_gain_1_s = 10;
     SurfaceEffect ground;
-    double z_over_r = 2;               ///< of the level vehicle over the plate
-    double friction_nm_s_rad = 0.002;  ///< of the bearings
+    double z_over_r = 2;               ///< height of the level vehicle over the plate, over R
+    double friction_nm_s_rad = 0.002;  ///< friction of the bearings
     double plate_from_s = 5, plate_to_s = 20, end_s = 30;
     BenchAid aid = BenchAid::none;
 };

@@ -8,7 +8,7 @@ namespace downwash::studies {
 /// Two rotors of a vehicle under a wide ceiling, one in front and one behind its centre.
 struct RotorPair {
     double arm_m = 0.25;       ///< from the centre to each hub
-    double radius_m = 0.1194;  ///< of the thesis' fit (2.18), 9.4 inches
+    double radius_m = 0.1194;  ///< radius of the rotor in the thesis' fit (2.18), 9.4 inches
 };
 
 /// How much more the front rotor's K is than the rear one's: K_front / K_rear - 1, with the vehicle's pitch raising the

@@ -19,7 +19,7 @@ struct CeilingInspection {
     std::vector<std::array<double, 2>> points_m = {{0, 0}, {1, 0}, {1, 1}, {2, 1}};  ///< x and y of the contacts
     double travel_m = -0.4;       ///< height of the frame between contacts, below the ceiling: negative
     double press_m = 0.02;        ///< how far above the ceiling the reference goes
-    double speed_m_s = 0.3;       ///< of the reference, along every leg
+    double speed_m_s = 0.3;       ///< speed of the reference along every leg
     double contact_s = 6;         ///< from the reference's arrival at the ceiling to its leaving
     double rest_s = 3;            ///< before each climb and after each descent
     double sample_s = 0;          ///< between two measurements of the position; 0: every tick

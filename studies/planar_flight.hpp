@@ -40,7 +40,7 @@ struct PlanarControl {
 struct PlanarExperiment {
     PlanarVehicle vehicle;
     PlanarControl control;
-    SurfaceEffect ground;   ///< of each rotor
+    SurfaceEffect ground;   ///< ground effect on each rotor
     double z_over_r = 2;    ///< height of the rotors over the plate
     bool has_plate = true;  ///< false: out of ground effect
     double plate_from_m = 3, plate_to_m = 5;

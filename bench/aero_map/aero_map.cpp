@@ -301,7 +301,7 @@ void print_meshes(const Options& options) {
     }
 }
 
-/// Of the bridge, where it is among the problems.
+/// The map of the bridge, where it is among the problems.
 std::optional<MapFigures> print_volume(const Options& options) {
     const auto bridge = std::find_if(options.problems.begin(), options.problems.end(), [](const std::string& file) {
         return std::filesystem::path(file).stem() == "bridge_inspection";

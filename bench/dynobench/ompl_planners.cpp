@@ -44,7 +44,7 @@ constexpr double max_speed_m_s = 4;
 constexpr double max_pitch_rate_rad_s = 8;
 constexpr double half_length_m = 0.3;
 constexpr double half_height_m = 0.1;
-/// Of place, pitch, speed, pitch rate, and time.
+/// Weights of place, pitch, speed, pitch rate, and time.
 constexpr double weights[] = {1, 0.5, 0.2, 0.2, 0};
 
 constexpr double integration_s = 0.01;

@@ -28,7 +28,7 @@ namespace {
 
 /// Hovers whose growth rate is nearer to zero than this are all flown [1/s]: there a verdict is hardest.
 constexpr double critical_rate_1_s = 0.05;
-/// Of the hovers that are stable by more, one in so many is flown.
+/// One in so many of the hovers that are stable by more is flown.
 constexpr int clear_ones = 50;
 /// Places looked at per row: where few hovers are unstable, fewer are flown.
 constexpr int max_places = 30000;
@@ -44,7 +44,7 @@ struct Count {
     std::string problem, robot;
     Disturbance disturbance;
     std::size_t unstable = 0, grew = 0, stable = 0, decayed = 0;
-    std::size_t critical = 0;  ///< of both, with a growth rate near zero
+    std::size_t critical = 0;  ///< hovers of either kind with a growth rate near zero
     std::size_t unknown = 0;   ///< places passed over
 };
 

@@ -41,7 +41,7 @@ constexpr Surface surfaces[] = {{"ceiling, the arm hanging", true, std::numbers:
 
 struct Kind {
     const char* name;
-    std::string_view type;  ///< of the law; empty: the robot file's
+    std::string_view type;  ///< type of the law; empty: the robot file's
     double observer_1_s;    ///< 0: none
     bool reads;
 };

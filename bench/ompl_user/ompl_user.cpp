@@ -38,7 +38,7 @@ constexpr const char* our_name = "downwash rrt-star";
 
 struct Row {
     std::string name;
-    std::vector<double> times_s;  ///< of every seed; infinite where nothing was found
+    std::vector<double> times_s;  ///< times of every seed; infinite where nothing was found
 };
 
 std::string milliseconds(double time_s) {

@@ -232,7 +232,7 @@ struct UserPlanner::Impl {
     }
 
     std::vector<FlownWorld> worlds;
-    std::vector<ClosedLoopOde> odes;  ///< of the particles
+    std::vector<ClosedLoopOde> odes;  ///< the equations of each particle
     oc::SpaceInformationPtr information;
     ob::GoalPtr goal;
     std::vector<double> start;

@@ -82,7 +82,7 @@ Problem random_scene(const Options& options, unsigned seed) {
     return problem;
 }
 
-using Order = std::vector<std::size_t>;  ///< of targets, from 0
+using Order = std::vector<std::size_t>;  ///< the targets in the order of visits, from 0
 
 constexpr double none = std::numeric_limits<double>::infinity();
 

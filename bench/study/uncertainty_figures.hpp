@@ -21,8 +21,8 @@ struct SetupFigures {
     WorldsFigures in_worlds;
     /// Reported a plan that fails in at most max_failure_share of the evaluation worlds.
     Share reliable;
-    Spread duration_s;        ///< of the reported plans' flights in the nominal world, of those that held
-    Spread cost_ratio;        ///< of these flights' costs to those of the reference setup on the same seed
+    Spread duration_s;        ///< durations of the reported plans' flights in the nominal world, of those that held
+    Spread cost_ratio;        ///< these flights' costs over those of the reference setup on the same seed
     std::size_t pairs = 0;    ///< seeds on which both have such a flight
     Spread first_solution_s;  ///< over all searches
 };

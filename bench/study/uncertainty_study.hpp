@@ -13,14 +13,14 @@ namespace downwash::bench {
 struct StudySettings {
     std::vector<Problem> problems;      ///< each with an uncertainty
     std::uint64_t seeds = 20;           ///< 1 to `seeds`
-    double time_limit_s = 5;            ///< of one search
+    double time_limit_s = 5;            ///< time limit of one search
     std::uint64_t worlds = 300;         ///< in which every reported plan is flown
     std::optional<std::uint64_t> jobs;  ///< searches at a time; empty: one per processor
 };
 
 /// A campaign of the study: what its planners believe, and in whose worlds their plans are flown.
 struct StudyPart {
-    std::string name;     ///< of its folder: "worlds_8"
+    std::string name;     ///< name of its folder: "worlds_8"
     std::string setting;  ///< what is uncertain where plans are flown: "problem's own", "CAMP's"
     std::string assumed;  ///< "nominal", "one pessimistic world", "8 worlds"
     /// Certificates are about the worlds in which the plans are flown.

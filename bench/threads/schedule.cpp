@@ -197,7 +197,7 @@ class Simulation {
         });
     }
 
-    /// Of an execution with a certificate the direct flight, which is all before its first batch, beside the rest.
+    /// The direct flight of an execution with a certificate, which is all before its first batch, beside the rest.
     void run_step(const WorkChain& step, int task, Then then) {
         const bool has_flight =
             task == 0 && policy_.flies_beside && policy_.threads > 1 && !step.empty() &&

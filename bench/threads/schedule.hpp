@@ -6,15 +6,15 @@ namespace downwash::bench {
 
 /// How work is dealt out to threads. The defaults are the planner's own rule.
 struct SchedulePolicy {
-    int threads = 1;           ///< of the search, as in SolveOptions; as many processors run them
+    int threads = 1;           ///< threads of the search, as in SolveOptions; as many processors run them
     double wake_s = 0;         ///< until a thread that waited for a batch works on it
     int max_workers = 3;       ///< that run the tasks of a round
     bool flies_ahead = true;   ///< certificates fly as many chunks of worlds at once as keep the threads busy
     bool flies_beside = true;  ///< a plan's direct flight goes on beside its certificate
-    int steps_in_flight = 1;   ///< of the tree, and of the refinement, that may run at a time
+    int steps_in_flight = 1;   ///< steps of the tree, and of the refinement, that may run at a time
     int steps_merged = 1;      ///< whose batches are flown as one: the first of each step together, then the second ...
     int rounds_merged = 1;     ///< whose tasks do not wait for each other
-    /// Of the serial work of tree and refinement, the share that their threads do side by side.
+    /// The share of the serial work of tree and refinement that their threads do side by side.
     double divided_share = 0;
 };
 

@@ -11,9 +11,9 @@ namespace downwash::bench {
 
 /// The time of a tick of one thread, by how many lanes of its register are in use.
 struct TickTime {
-    double few_s = 0;   ///< of the kernel for few lanes
-    double many_s = 0;  ///< of the kernel for many
-    double lane_s = 0;  ///< of a lane's checks, beside the kernel
+    double few_s = 0;   ///< time of a tick of the kernel for few lanes
+    double many_s = 0;  ///< time of a tick of the kernel for many lanes
+    double lane_s = 0;  ///< time of a lane's checks, beside the kernel
 
     static constexpr int few_lanes = 4;
     [[nodiscard]] double at(int lanes) const noexcept { return (lanes > few_lanes ? many_s : few_s) + lane_s * lanes; }
@@ -24,9 +24,9 @@ struct WorkItem {
     enum class Kind : std::uint8_t { serial, parallel, batch };
     Kind kind = Kind::serial;
     double work_s = 0;                ///< on one thread
-    std::size_t items = 0;            ///< of parallel work, of equal length
-    std::vector<std::int64_t> ticks;  ///< of each job of a batch
-    TickTime tick;                    ///< of a batch
+    std::size_t items = 0;            ///< items of parallel work, of equal length
+    std::vector<std::int64_t> ticks;  ///< ticks of each job of a batch
+    TickTime tick;                    ///< time of a tick of a batch
 };
 
 using WorkChain = std::vector<WorkItem>;
@@ -61,7 +61,7 @@ struct SearchWork {
 /// Processor time by what it was spent on [s].
 struct WorkShares {
     double outside_serial_s = 0, outside_flights_s = 0;       ///< before the first plan and between rounds
-    std::array<double, 3> task_serial_s{}, task_flights_s{};  ///< of rounds, by task
+    std::array<double, 3> task_serial_s{}, task_flights_s{};  ///< time of rounds, by task
     std::size_t rounds = 0, steps = 0, batches = 0, jobs = 0;
 
     [[nodiscard]] double all_s() const noexcept;
