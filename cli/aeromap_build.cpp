@@ -126,27 +126,29 @@ ExitCode run(const BuildArguments& given) {
 
 }  // namespace
 
-void add_aeromap_build(CLI::App& aeromap, Action& action) {
+void add_aeromap_build(Command aeromap, Action& action) {
     auto [command, given] = add_command(aeromap, action, "build",
                                         "Evaluate a problem's surface effects, on rotors or on the whole vehicle, on a "
                                         "regular grid and write it as a file",
                                         run);
     add_problem(command, given.problem);
-    add_out(command, "FILE", given.output, "a file, .vti (VTK ImageData, opens in ParaView) or .csv")->required();
-    add_value(command, "--step M", given.step_m, "maximum distance between nodes [m]; default aero.grid_m");
-    CLI::Option* one_rotor =
-        add_value(command, "--rotor N", given.rotor,
-                  "number of the rotor, counted from 1; only its plane, default: one layer for every lateral offset");
-    CLI::Option* lateral =
-        add_value(command, "--lateral LOW HIGH", given.lateral_m,
-                  "distance to the left of the plane of motion [m]; a volume from LOW to HIGH instead of planes")
-            ->expected(2);
-    add_value(
-        command, "--pitch-deg P...", given.pitch_deg,
-        "pitch of the vehicle [deg], positive nose down; the whole vehicle instead of rotors, as .csv: force factor, "
-        "pitch torque and its factor over the place of the centre of mass")
-        ->excludes(one_rotor)
-        ->excludes(lateral);
+    add_out(command, "FILE", given.output, "a file, .vti (VTK ImageData, opens in ParaView) or .csv").required();
+    command.add_option("--step M", given.step_m, "maximum distance between nodes [m]; default aero.grid_m");
+    Option one_rotor = command.add_option(
+        "--rotor N", given.rotor,
+        "number of the rotor, counted from 1; only its plane, default: one layer for every lateral offset");
+    Option lateral =
+        command
+            .add_option("--lateral LOW HIGH", given.lateral_m,
+                        "distance to the left of the plane of motion [m]; a volume from LOW to HIGH instead of planes")
+            .values(2);
+    command
+        .add_option("--pitch-deg P...", given.pitch_deg,
+                    "pitch of the vehicle [deg], positive nose down; the whole vehicle instead of rotors, as .csv: "
+                    "force factor, "
+                    "pitch torque and its factor over the place of the centre of mass")
+        .excludes(one_rotor)
+        .excludes(lateral);
     add_threads(command, given.threads);
     add_quiet(command, given.is_quiet);
 }

@@ -256,7 +256,7 @@ ExitCode run(const CompareArguments& given) {
 
 }  // namespace
 
-void add_aeromap_compare(CLI::App& aeromap, Action& action) {
+void add_aeromap_compare(Command aeromap, Action& action) {
     auto [command, given] =
         add_command(aeromap, action, "compare",
                     "Compare all models with measurements, each with the parameters of its source and refitted", run);

@@ -343,17 +343,15 @@ ExitCode run(const FitArguments& given) {
 
 }  // namespace
 
-void add_aeromap_fit(CLI::App& aeromap, Action& action) {
+void add_aeromap_fit(Command aeromap, Action& action) {
     auto [command, given] =
         add_command(aeromap, action, "fit", "Fit the parameters of a model to measurements by least squares", run);
     given.data.add_options(command);
-    offer_models(*add_value(command, "--model NAME", given.model, "name of a model as in a problem file"));
+    offer_models(command.add_option("--model NAME", given.model, "name of a model as in a problem file"));
     command.add_flag("--tilt-loss", given.of_tilt,
                      "fit the tilt loss instead of a model, beside the measurements without tilt");
     command.add_flag("--walls", given.of_walls, "fit force and moment beside a wall instead of a model");
-    add_value(command, "--fix NAME=VALUE", given.fixed, "keep a parameter at a value; may be repeated")
-        ->expected(1)
-        ->take_all();
+    command.add_option("--fix NAME=VALUE", given.fixed, "keep a parameter at a value; may be repeated").repeated();
     command.add_flag("--weighted", given.is_weighted, "weight each residual by 1 / sigma, a column of DATA");
     add_out(command, "FILE", given.picture, "a picture of measurements, curve and residuals, .svg, .png or .pdf");
     add_json(command, given.as_json);

@@ -126,14 +126,14 @@ ExitCode run(const HoldArguments& given) {
 
 }  // namespace
 
-void add_aeromap_hold(CLI::App& aeromap, Action& action) {
+void add_aeromap_hold(Command aeromap, Action& action) {
     auto [command, given] = add_command(
         aeromap, action, "hold",
         "Check whether the vehicle can hover at a point: rotor limits, saturation and stability of the closed loop",
         run);
     add_problem(command, given.problem);
     add_arm(command, given.arm_deg);
-    add_points(command, given.at, "centre of mass in plane coordinates [m], within the bounds or not")->required();
+    add_points(command, given.at, "centre of mass in plane coordinates [m], within the bounds or not").required();
     add_json(command, given.as_json);
 }
 

@@ -86,13 +86,13 @@ constexpr std::array<OptionUse, 14> option_uses{{
 
 /// A request with the command whose options gave it.
 struct PlotArguments : PlotRequest {
-    const CLI::App* command = nullptr;
+    Command command;
 };
 
 void reject_useless_options(const PlotArguments& request) {
     const Shown shown(request);
     for (const OptionUse& use : option_uses) {
-        if (request.command->get_option(use.option)->count() > 0 && !(shown.*use.is_used)) {
+        if (request.command.option(use.option).is_given() && !(shown.*use.is_used)) {
             throw UsageError("{} changes nothing in this picture: it goes with {}", use.option, use.use);
         }
     }
@@ -164,44 +164,43 @@ ExitCode run(const PlotArguments& given) {
 
 }  // namespace
 
-void add_aeromap_plot(CLI::App& aeromap, Action& action) {
+void add_aeromap_plot(Command aeromap, Action& action) {
     auto [plot, given] =
         add_command(aeromap, action, "plot",
                     "Draw a problem's aero map, curves of models with measurements, or a rotor's potential flow", run);
-    given.command = &plot;
+    given.command = plot;
     plot.add_option("PROBLEM", given.problem, "problem file: draw a picture over its plane of motion");
-    CLI::Option* kind = plot.add_option("--what", given.what, "what to show of a problem: " + kinds_text());
-    offer_words(*kind->capture_default_str(), names_of(field_kinds));
-    CLI::Option* one_rotor =
-        add_value(plot, "--rotor N", given.rotor, "number of the rotor, counted from 1")->capture_default_str();
-    add_value(plot, "--lateral Y", given.lateral_m,
-              "distance to the left of the plane of motion [m]; of the hub, default: its own place")
-        ->excludes(one_rotor);
+    Option kind = plot.add_option("--what", given.what, "what to show of a problem: " + kinds_text());
+    kind.shows_default().offers(names_of(field_kinds));
+    Option one_rotor = plot.add_option("--rotor N", given.rotor, "number of the rotor, counted from 1").shows_default();
+    plot.add_option("--lateral Y", given.lateral_m,
+                    "distance to the left of the plane of motion [m]; of the hub, default: its own place")
+        .excludes(one_rotor);
     add_arm(plot, given.arm_deg);
-    add_value(plot, "--pitch-deg P", given.pitch_deg,
-              "pitch of the vehicle [deg], positive nose down; with --what force or torque")
-        ->capture_default_str();
-    add_value(plot, "--x LOW HIGH", given.x_m, "shown part of the plane [m]; default: the reach of the rotors")
-        ->expected(2);
-    add_value(plot, "--z LOW HIGH", given.z_m, "the same for z")->expected(2);
-    CLI::Option* model =
-        plot.add_option("--model", given.models, "name of a model as in a problem file; curves of K over z/R");
-    offer_models(*model->type_name("NAME..."));
-    add_value(plot, "--data CSV", given.data, "measurements to show with them: CSV as for `aeromap fit`");
-    offer_words(
-        *add_value(plot, "--surface S", given.surface, "only measurements at this surface, `ground` or `ceiling`"),
-        measured_surfaces);
-    add_value(plot, "--source NAME", given.source, "only measurements of this source");
-    add_value(plot, "--max-factor K", given.max_factor, "cap of K; default 2");
-    add_value(plot, "--rotor-spacing D", given.rotor_spacing,
-              "spacing of adjacent axes of a square quadrotor in radii; for multirotor models, default 2.5");
-    add_value(plot, "--tilt-deg T...", given.tilt_deg, "tilt of the rotor's axis from the vertical [deg]");
+    plot.add_option("--pitch-deg P", given.pitch_deg,
+                    "pitch of the vehicle [deg], positive nose down; with --what force or torque")
+        .shows_default();
+    plot.add_option("--x LOW HIGH", given.x_m, "shown part of the plane [m]; default: the reach of the rotors")
+        .values(2);
+    plot.add_option("--z LOW HIGH", given.z_m, "the same for z").values(2);
+    Option model =
+        plot.add_option("--model NAME...", given.models, "name of a model as in a problem file; curves of K over z/R");
+    offer_models(model);
+    plot.add_option("--data CSV", given.data, "measurements to show with them: CSV as for `aeromap fit`");
+    plot.add_option("--surface S", given.surface, "only measurements at this surface, `ground` or `ceiling`")
+        .offers(measured_surfaces);
+    plot.add_option("--source NAME", given.source, "only measurements of this source");
+    plot.add_option("--max-factor K", given.max_factor, "cap of K; default 2");
+    plot.add_option("--rotor-spacing D", given.rotor_spacing,
+                    "spacing of adjacent axes of a square quadrotor in radii; for multirotor models, default 2.5");
+    plot.add_option("--tilt-deg T...", given.tilt_deg, "tilt of the rotor's axis from the vertical [deg]");
     plot.add_flag("--flow", given.is_flow, "the potential flow of a rotor and its image below the ground");
-    add_value(plot, "--z-over-r LOW HIGH", given.z_over_r,
-              "distance from the surface in rotor radii; shown range of curves (default 0 4), or the rotor's height "
-              "with --flow")
-        ->expected(1, 2);
-    add_out(plot, "FILE", given.output, "the picture, .svg, .png or .pdf")->required();
+    plot.add_option(
+            "--z-over-r LOW HIGH", given.z_over_r,
+            "distance from the surface in rotor radii; shown range of curves (default 0 4), or the rotor's height "
+            "with --flow")
+        .values(1, 2);
+    add_out(plot, "FILE", given.output, "the picture, .svg, .png or .pdf").required();
     add_width(plot, given.width_px);
     add_no_labels(plot, given.no_labels);
     add_quiet(plot, given.is_quiet);

@@ -279,7 +279,7 @@ ExitCode run(const QueryArguments& given) {
 
 }  // namespace
 
-void add_aeromap_query(CLI::App& aeromap, Action& action) {
+void add_aeromap_query(Command aeromap, Action& action) {
     auto [command, given] = add_command(
         aeromap, action, "query",
         "Print the thrust ratio K of a rotor: PROBLEM with --at, or --model with --z-over-r for a wide flat surface",
@@ -288,13 +288,13 @@ void add_aeromap_query(CLI::App& aeromap, Action& action) {
     add_points(command, given.at,
                "rotor hub in the world frame [m]. `factor` comes from the problem's map if the point "
                "lies on one of its planes");
-    add_value(command, "--points FILE", given.points,
-              "file with more points, one per line; - reads them from standard input");
-    add_value(command, "--rotor N", given.rotor,
-              "number of the rotor, counted from 1; the multirotor models consider its neighbours, default 1");
-    offer_models(*add_value(command, "--model NAME", given.model.name, "name of a model as in a problem file"));
-    add_value(command, "--z-over-r V...", given.z_over_r, "distance from the surface in rotor radii");
-    add_value(command, "--tilt-deg T", given.tilt_deg, "tilt of the rotor's axis from the vertical [deg]");
+    command.add_option("--points FILE", given.points,
+                       "file with more points, one per line; - reads them from standard input");
+    command.add_option("--rotor N", given.rotor,
+                       "number of the rotor, counted from 1; the multirotor models consider its neighbours, default 1");
+    offer_models(command.add_option("--model NAME", given.model.name, "name of a model as in a problem file"));
+    command.add_option("--z-over-r V...", given.z_over_r, "distance from the surface in rotor radii");
+    command.add_option("--tilt-deg T", given.tilt_deg, "tilt of the rotor's axis from the vertical [deg]");
     add_model_options(command, given.model);
     add_threads(command, given.threads);
     add_no_cache(command, given.no_cache);

@@ -80,15 +80,15 @@ ExitCode run(const BenchMergeArguments& given) {
 
 }  // namespace
 
-void add_bench_merge(CLI::App& bench, Action& action) {
+void add_bench_merge(Command bench, Action& action) {
     auto [command, given] = add_command(
         bench, action, "merge",
         "Join the shards of a campaign into one folder; exit code 1 if runs are missing, which it then names", run);
-    command.add_option("OUT", given.out, "folder for the merged results")->required();
+    command.add_option("OUT", given.out, "folder for the merged results").required();
     command
         .add_option("SHARD", given.shards,
                     "folders that `bench run --shard` wrote to; `-`: standard input names them, one in each line")
-        ->required();
+        .required();
     command.add_flag("--force", given.replaces, "replace what is in the folder");
 }
 

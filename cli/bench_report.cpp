@@ -44,21 +44,19 @@ ExitCode run(const BenchReportArguments& given) {
 
 }  // namespace
 
-void add_bench_report(CLI::App& bench, Action& action) {
+void add_bench_report(Command bench, Action& action) {
     auto [command, given] = add_command(
         bench, action, "report",
         "Report the results of a campaign as Markdown; exit code 1 if it misses a target that its file sets", run);
-    command.add_option("DIR", given.folder, "folder that `bench run` wrote to")->required();
+    command.add_option("DIR", given.folder, "folder that `bench run` wrote to").required();
     add_json(command, given.as_json, "every figure, and those of every seed");
-    CLI::Option* json = command.get_option("--json");
-    CLI::Option* html =
-        command.add_flag("--html", given.as_html, "one HTML page with pictures, as `bench run` writes it");
-    CLI::Option* latex =
-        command.add_flag("--latex", given.as_latex, "a table for papers, for the LaTeX package booktabs");
-    CLI::Option* csv = command.add_flag("--csv", given.as_csv, "CSV: one row per problem and planner");
-    html->excludes(json);
-    latex->excludes(json)->excludes(html);
-    csv->excludes(json)->excludes(html)->excludes(latex);
+    Option json = command.option("--json");
+    Option html = command.add_flag("--html", given.as_html, "one HTML page with pictures, as `bench run` writes it");
+    Option latex = command.add_flag("--latex", given.as_latex, "a table for papers, for the LaTeX package booktabs");
+    Option csv = command.add_flag("--csv", given.as_csv, "CSV: one row per problem and planner");
+    html.excludes(json);
+    latex.excludes(json).excludes(html);
+    csv.excludes(json).excludes(html).excludes(latex);
     add_out(command, "FILE", given.out, "a file; default: standard output");
 }
 

@@ -104,21 +104,23 @@ ExitCode run(const BenchRunArguments& given) {
 
 }  // namespace
 
-void add_bench_run(CLI::App& bench, Action& action) {
+void add_bench_run(Command bench, Action& action) {
     auto [command, given] = add_command(
         bench, action, "run",
         "Run problems x variants x algorithms x seeds on all processors into one SQLite file, campaign.db", run);
-    command.add_option("CAMPAIGN", given.campaign, "campaign file")->required();
+    command.add_option("CAMPAIGN", given.campaign, "campaign file").required();
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/bench-NAME/");
     command.add_flag("--resume", given.resumes,
                      "continue with the results that are there, if they were begun with the same settings");
     add_jobs(command, given.jobs, "that of the campaign, or one per processor, in a shard one");
-    add_value(command, "--shard I/N", given.shard,
-              "make only the runs of shard I of N; `bench merge` joins the shards. A shard may run on any machine");
+    command.add_option(
+        "--shard I/N", given.shard,
+        "make only the runs of shard I of N; `bench merge` joins the shards. A shard may run on any machine");
     add_pilot(command, given.pilot, "with --shard, and the same for all shards");
-    add_value(command, "--save DIR", given.saved,
-              "keep a copy of the results there, every two minutes and at the end, and begin with it if it has more "
-              "runs: for results on the disk of one node");
+    command.add_option(
+        "--save DIR", given.saved,
+        "keep a copy of the results there, every two minutes and at the end, and begin with it if it has more "
+        "runs: for results on the disk of one node");
     add_wall_limit(command, given.wall_limit_s,
                    "then searches that have not ended are dropped, the exit code is 1, and --resume continues");
     add_no_cache(command, given.no_cache);

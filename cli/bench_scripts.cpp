@@ -84,11 +84,11 @@ ExitCode run_parallel(const ScriptArguments& given) {
     return write(bench::parallel_scripts(scripts), scripts.folder);
 }
 
-void add_script_options(CLI::App& command, ScriptArguments& given) {
-    command.add_option("CAMPAIGN", given.campaign, "campaign file")->required();
-    add_value(command, "--shards N", given.shards, "how many shards")
-        ->required()
-        ->check(CLI::Range(std::uint64_t{1}, bench::max_shards));
+void add_script_options(Command command, ScriptArguments& given) {
+    command.add_option("CAMPAIGN", given.campaign, "campaign file").required();
+    command.add_option("--shards N", given.shards, "how many shards")
+        .required()
+        .in_range(std::uint64_t{1}, bench::max_shards);
     add_out(command, "DIR", given.out,
             "folder for the scripts, the shards and their merge; default downwash-out/bench-NAME/");
     add_jobs(command, given.jobs, "that of the campaign, or one");
@@ -97,7 +97,7 @@ void add_script_options(CLI::App& command, ScriptArguments& given) {
 
 }  // namespace
 
-void add_bench_slurm(CLI::App& bench, Action& action) {
+void add_bench_slurm(Command bench, Action& action) {
     auto [command, given] =
         add_command(bench, action, "slurm",
                     "Write scripts that run a campaign in shards on a cluster with Slurm; prints the "
@@ -105,14 +105,15 @@ void add_bench_slurm(CLI::App& bench, Action& action) {
                     run_slurm);
     add_script_options(command, given);
     constexpr std::uint64_t max_minutes = 60 * 24 * 30;
-    add_value(
-        command, "--task-time MIN", given.task_minutes,
-        "Slurm's time limit of a task [min]: before it is over the task keeps what is finished and goes back to the "
-        "queue; default 60")
-        ->check(CLI::Range(std::uint64_t{1}, max_minutes));
+    command
+        .add_option("--task-time MIN", given.task_minutes,
+                    "Slurm's time limit of a task [min]: before it is over the task keeps what is finished and goes "
+                    "back to the "
+                    "queue; default 60")
+        .in_range(std::uint64_t{1}, max_minutes);
 }
 
-void add_bench_parallel(CLI::App& bench, Action& action) {
+void add_bench_parallel(Command bench, Action& action) {
     auto [command, given] = add_command(bench, action, "parallel",
                                         "Write scripts that run a campaign in shards on one machine with GNU parallel; "
                                         "prints the command that starts them",

@@ -103,15 +103,15 @@ ExitCode run(const CheckArguments& given) {
 
 }  // namespace
 
-void add_check(CLI::App& program, Action& action) {
+void add_check(Command program, Action& action) {
     auto [command, given] = add_command(
         program, action, "check",
         "Check problem, robot and campaign files and report every error and warning with its line and column", run);
     command.add_option("PROBLEM", given.problems, "problem, robot or campaign files");
-    CLI::Option* schema =
+    Option schema =
         command.add_option("--schema", given.schema,
                            "print the JSON Schema of a kind of file instead, for editors that complete and check YAML");
-    require_one_of(*schema, {"problem", "robot", "campaign"});
+    schema.one_of({"problem", "robot", "campaign"});
     add_json(command, given.as_json, "the errors and warnings");
 }
 

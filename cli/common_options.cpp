@@ -27,71 +27,75 @@ std::filesystem::path path_in(const char* variable) {
 
 }  // namespace
 
-void add_problem(CLI::App& command, std::string& file) {
-    command.add_option("PROBLEM", file, "problem file")->required();
+void add_problem(Command command, std::string& file) {
+    command.add_option("PROBLEM", file, "problem file").required();
 }
 
-void add_json(CLI::App& command, bool& as_json, const std::string& detail) {
+void add_json(Command command, bool& as_json, const std::string& detail) {
     command.add_flag("--json", as_json, meaning_and("JSON instead of text", detail));
 }
 
-void add_quiet(CLI::App& command, bool& is_quiet) {
+void add_quiet(Command command, bool& is_quiet) {
     command.add_flag("--quiet", is_quiet, "print only errors on standard error, no progress");
 }
 
-void add_no_cache(CLI::App& command, bool& no_cache) {
+void add_no_cache(Command command, bool& no_cache) {
     command.add_flag("--no-cache", no_cache,
                      "neither read nor write the cache of aero maps in $XDG_CACHE_HOME/downwash (~/.cache/downwash)");
 }
 
-void add_threads(CLI::App& command, int& threads) {
-    add_value(command, "--threads N", threads,
-              fmt::format("number of threads, 1 to {}; the result does not depend on it; default: one per processor",
-                          max_threads))
-        ->check(CLI::Range(1, max_threads));
+void add_threads(Command command, int& threads) {
+    command
+        .add_option(
+            "--threads N", threads,
+            fmt::format("number of threads, 1 to {}; the result does not depend on it; default: one per processor",
+                        max_threads))
+        .in_range(1, max_threads);
 }
 
-void add_jobs(CLI::App& command, std::optional<std::uint64_t>& jobs, const std::string& otherwise) {
-    add_value(command, "--jobs N", jobs,
-              fmt::format("searches at a time, 1 to {}; default: {}", max_threads, otherwise))
-        ->check(CLI::Range(1, max_threads));
+void add_jobs(Command command, std::optional<std::uint64_t>& jobs, const std::string& otherwise) {
+    command
+        .add_option("--jobs N", jobs, fmt::format("searches at a time, 1 to {}; default: {}", max_threads, otherwise))
+        .in_range(1, max_threads);
 }
 
-void add_wall_limit(CLI::App& command, std::optional<double>& limit_s, const std::string& detail) {
-    add_value(command, "--wall-limit S", limit_s,
-              meaning_and("wall time of the whole command [s], reading and the aero map included", detail))
-        ->check(CLI::PositiveNumber);
+void add_wall_limit(Command command, std::optional<double>& limit_s, const std::string& detail) {
+    command
+        .add_option("--wall-limit S", limit_s,
+                    meaning_and("wall time of the whole command [s], reading and the aero map included", detail))
+        .positive();
 }
 
-CLI::Option* add_plan(CLI::App& command, std::string& plan) {
-    return add_value(command, "--plan FILE", plan, "the plan: solution.json, or the folder of the run that wrote it")
-        ->required();
+Option add_plan(Command command, std::string& plan) {
+    return command.add_option("--plan FILE", plan, "the plan: solution.json, or the folder of the run that wrote it")
+        .required();
 }
 
-CLI::Option* add_run(CLI::App& command, std::string& folder) {
+Option add_run(Command command, std::string& folder) {
     return command.add_option("DIR", folder, "folder that `solve` or `execute` wrote to, or the solution.json in it")
-        ->required();
+        .required();
 }
 
-CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg) {
-    return add_value(command, "--arm-deg A", arm_deg,
-                     "arm angle relative to the multirotor [deg]; default: that of the problem's start");
+Option add_arm(Command command, std::optional<double>& arm_deg) {
+    return command.add_option("--arm-deg A", arm_deg,
+                              "arm angle relative to the multirotor [deg]; default: that of the problem's start");
 }
 
-void add_pilot(CLI::App& command, std::optional<std::string>& folder, const std::string& needs) {
-    add_value(
-        command, "--pilot DIR", folder,
+void add_pilot(Command command, std::optional<std::string>& folder, const std::string& needs) {
+    command.add_option(
+        "--pilot DIR", folder,
         meaning_and("deal out the runs to shards by the times that the campaign in this folder has measured", needs));
 }
 
-void add_width(CLI::App& command, std::optional<int>& width_px) {
-    add_value(command, "--width PX", width_px,
-              fmt::format("width of the pictures [pixels]: {} to {}; default {}", min_picture_width_px,
-                          max_picture_width_px, PictureSettings{}.width_px))
-        ->check(CLI::Range(min_picture_width_px, max_picture_width_px));
+void add_width(Command command, std::optional<int>& width_px) {
+    command
+        .add_option("--width PX", width_px,
+                    fmt::format("width of the pictures [pixels]: {} to {}; default {}", min_picture_width_px,
+                                max_picture_width_px, PictureSettings{}.width_px))
+        .in_range(min_picture_width_px, max_picture_width_px);
 }
 
-void add_no_labels(CLI::App& command, bool& no_labels) {
+void add_no_labels(Command command, bool& no_labels) {
     command.add_flag("--no-labels", no_labels, "leave out the names of obstacles in pictures");
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -18,19 +17,12 @@ namespace downwash::cli {
 /// Adds a command: if it is given, `run` is called with the values of its options.
 /// @return the command and those values, for its options to be added
 template <class Arguments>
-std::pair<CLI::App&, Arguments&> add_command(CLI::App& parent, Action& action, const std::string& name,
-                                             const std::string& description, ExitCode (*run)(const Arguments&)) {
+std::pair<Command, Arguments&> add_command(Command parent, Action& action, const std::string& name,
+                                           const std::string& description, ExitCode (*run)(const Arguments&)) {
     const auto given = std::make_shared<Arguments>();
-    CLI::App* command = parent.add_subcommand(name, description);
-    command->callback([=, &action] { action = [=] { return run(*given); }; });
-    return {*command, *given};
-}
-
-/// Adds an option with a value, spelled as in the help: "--step M" or "-o,--out FILE".
-template <class Value>
-CLI::Option* add_value(CLI::App& command, const std::string& spelling, Value& value, const std::string& description) {
-    const std::size_t blank = spelling.find(' ');
-    return command.add_option(spelling.substr(0, blank), value, description)->type_name(spelling.substr(blank + 1));
+    Command command = parent.add_command(name, description);
+    command.on_given([=, &action] { action = [=] { return run(*given); }; });
+    return {command, *given};
 }
 
 // Options that several commands have, each with the same name and short form everywhere. The description begins with
@@ -39,40 +31,38 @@ CLI::Option* add_value(CLI::App& command, const std::string& spelling, Value& va
 /// "meaning; detail", or the meaning alone.
 [[nodiscard]] std::string meaning_and(std::string meaning, const std::string& detail);
 
-void add_problem(CLI::App& command, std::string& file);
-void add_json(CLI::App& command, bool& as_json, const std::string& detail = "");
-void add_quiet(CLI::App& command, bool& is_quiet);
-void add_no_cache(CLI::App& command, bool& no_cache);
-void add_threads(CLI::App& command, int& threads);
+void add_problem(Command command, std::string& file);
+void add_json(Command command, bool& as_json, const std::string& detail = "");
+void add_quiet(Command command, bool& is_quiet);
+void add_no_cache(Command command, bool& no_cache);
+void add_threads(Command command, int& threads);
 /// @param otherwise says how many there are without the option
-void add_jobs(CLI::App& command, std::optional<std::uint64_t>& jobs, const std::string& otherwise);
+void add_jobs(Command command, std::optional<std::uint64_t>& jobs, const std::string& otherwise);
 /// --wall-limit. @param detail what happens then
-void add_wall_limit(CLI::App& command, std::optional<double>& limit_s, const std::string& detail);
+void add_wall_limit(Command command, std::optional<double>& limit_s, const std::string& detail);
 /// What it takes: see plan_file().
-CLI::Option* add_plan(CLI::App& command, std::string& plan);
+Option add_plan(Command command, std::string& plan);
 /// What it takes: see run_folder().
-CLI::Option* add_run(CLI::App& command, std::string& folder);
+Option add_run(Command command, std::string& folder);
 /// See arm_option().
-CLI::Option* add_arm(CLI::App& command, std::optional<double>& arm_deg);
+Option add_arm(Command command, std::optional<double>& arm_deg);
 /// --pilot. @param needs what it stands beside
-void add_pilot(CLI::App& command, std::optional<std::string>& folder, const std::string& needs);
-void add_width(CLI::App& command, std::optional<int>& width_px);
-void add_no_labels(CLI::App& command, bool& no_labels);
+void add_pilot(Command command, std::optional<std::string>& folder, const std::string& needs);
+void add_width(Command command, std::optional<int>& width_px);
+void add_no_labels(Command command, bool& no_labels);
 
 /// -o,--out. @param placeholder FILE or DIR   @param detail what it holds, and where it is without the option
 template <class Value>
-CLI::Option* add_out(CLI::App& command, const std::string& placeholder, Value& out, const std::string& detail) {
-    return add_value(command, "-o,--out " + placeholder, out, meaning_and("where to write", detail));
+Option add_out(Command command, const std::string& placeholder, Value& out, const std::string& detail) {
+    return command.add_option("-o,--out " + placeholder, out, meaning_and("where to write", detail));
 }
 
 /// --at with so many coordinates, as often as wanted.
 template <std::size_t size>
-CLI::Option* add_points(CLI::App& command, std::vector<std::array<double, size>>& points, const std::string& detail) {
-    return command.add_option("--at", points, meaning_and("a point; may be repeated", detail))
-        ->type_name(size == 2 ? "X Z" : "X Y Z")
-        ->expected(1)
-        ->allow_extra_args(false)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+Option add_points(Command command, std::vector<std::array<double, size>>& points, const std::string& detail) {
+    return command
+        .add_option(size == 2 ? "--at X Z" : "--at X Y Z", points, meaning_and("a point; may be repeated", detail))
+        .repeated();
 }
 
 /// Checks a coordinate that a user gave [m]. @param where it was given, for the message

@@ -145,7 +145,7 @@ ExitCode run(const ExecuteArguments& given) {
 
 }  // namespace
 
-void add_execute(CLI::App& program, Action& action) {
+void add_execute(Command program, Action& action) {
     auto [command, given] = add_command(
         program, action, "execute",
         "Execute a plan again in closed loop; write the same files as solve, with the record of the search copied",
@@ -153,12 +153,12 @@ void add_execute(CLI::App& program, Action& action) {
     add_problem(command, given.problem);
     add_plan(command, given.plan);
     given.planner.add(command, "planner.safety_margin_m");
-    CLI::Option* option =
+    Option option =
         command.add_option("--aero", given.aero, "on: surface effects evaluated directly (default); off: free air");
-    require_one_of(*option, {"on", "off"});
-    add_value(command, "--world I", given.world,
-              "world I of the problem's uncertainty to fly in; 0 is the nominal one (default)");
-    add_value(command, "--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
+    option.one_of({"on", "off"});
+    command.add_option("--world I", given.world,
+                       "world I of the problem's uncertainty to fly in; 0 is the nominal one (default)");
+    command.add_option("--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED-executed/");
     add_force(command, given.force);
     add_threads(command, given.threads);

@@ -133,16 +133,16 @@ ExitCode run(const ExplainArguments& given) {
 
 }  // namespace
 
-void add_explain(CLI::App& program, Action& action) {
+void add_explain(Command program, Action& action) {
     auto [command, given] = add_command(
         program, action, "explain", "Explain a key of a file: its meaning, the expected value and the default", run);
     command
         .add_option("KEY", given.key,
                     "a key (safety_margin_m), a path of keys (planner.safety_margin_m), or a word (margin) of keys or "
                     "their descriptions")
-        ->required();
-    CLI::Option* option = command.add_option("--of", given.kind, "kind of file; default problem, with its robot");
-    require_one_of(*option, {"problem", "robot", "campaign"});
+        .required();
+    Option option = command.add_option("--of", given.kind, "kind of file; default problem, with its robot");
+    option.one_of({"problem", "robot", "campaign"});
 }
 
 }  // namespace downwash::cli

@@ -80,20 +80,22 @@ std::string formats_help() {
 
 }  // namespace
 
-void add_export(CLI::App& program, Action& action) {
+void add_export(Command program, Action& action) {
     auto [command, given] =
         add_command(program, action, "export", "Write a run as a file that other programs read", run);
     add_run(command, given.folder);
-    CLI::Option* option = add_value(command, "--format F", given.format, formats_help())->required();
-    offer_words(*option, names_of(export_formats()));
+    Option option = command.add_option("--format F", given.format, formats_help()).required();
+    option.offers(names_of(export_formats()));
     add_out(command, "FILE", given.out, "a file; default its usual name, in that folder");
-    add_value(command, "--rate HZ", given.rate_hz, "set-points per second; default: the controller's rate");
-    add_value(command, "--origin LATITUDE LONGITUDE ALTITUDE", given.origin,
-              "origin of the world frame, for qgc: latitude and longitude in degrees (WGS 84), and altitude of z = 0 "
-              "in m above mean sea level")
-        ->expected(3);
-    add_value(command, "--bearing DEG", given.bearing_deg,
-              "compass direction of the world's x axis, clockwise from north; default 0");
+    command.add_option("--rate HZ", given.rate_hz, "set-points per second; default: the controller's rate");
+    command
+        .add_option(
+            "--origin LATITUDE LONGITUDE ALTITUDE", given.origin,
+            "origin of the world frame, for qgc: latitude and longitude in degrees (WGS 84), and altitude of z = 0 "
+            "in m above mean sea level")
+        .values(3);
+    command.add_option("--bearing DEG", given.bearing_deg,
+                       "compass direction of the world's x axis, clockwise from north; default 0");
     command.add_flag("--anyway", given.anyway, "write a plan for others to fly even if its own flight failed");
 }
 

@@ -73,7 +73,7 @@ ExitCode run(const InitArguments& given) {
 
 }  // namespace
 
-void add_init(CLI::App& program, Action& action) {
+void add_init(Command program, Action& action) {
     auto [command, given] = add_command(
         program, action, "init",
         "Write a commented problem to start from, with its robot beside it; existing files are never replaced", run);

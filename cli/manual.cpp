@@ -6,7 +6,6 @@
 
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
-#include "downwash/cli/command_walk.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/completion.hpp"
 #include "downwash/cli/output.hpp"
@@ -38,20 +37,9 @@ std::string in_roff(const std::string& text) {
 }
 
 /// "--seed N" or "PROBLEM"
-std::string spelled(const CLI::Option& option) {
-    std::string text = option.get_positional() ? option.get_name(true) : option.get_name(false, true);
-    if (!option.get_positional() && option.get_items_expected_max() > 0) {
-        text += " " + option.get_type_name();
-    }
-    return text;
-}
-
-/// Positional arguments, then options.
-std::vector<const CLI::Option*> all_options_of(const CLI::App& command) {
-    std::vector<const CLI::Option*> all = options_of(command, true);
-    const std::vector<const CLI::Option*> named = options_of(command, false);
-    all.insert(all.end(), named.begin(), named.end());
-    return all;
+std::string spelled(const Option& option) {
+    return option.is_positional() || option.max_values() == 0 ? option.spelling()
+                                                              : option.spelling() + " " + option.type();
 }
 
 /// An entry of a list in a manual page.
@@ -59,13 +47,15 @@ std::string entry(const std::string& name, const std::string& description) {
     return fmt::format(".TP\n.B {}\n{}\n", in_roff(name), in_roff(description));
 }
 
-std::string synopsis(const CLI::App& command) {
-    std::string text = ".B " + in_roff(full_name(command)) + "\n";
-    if (!commands_of(command).empty()) {
+std::string synopsis(const Command& command) {
+    std::string text = ".B " + in_roff(command.full_name()) + "\n";
+    if (!command.commands().empty()) {
         return text + "COMMAND\n";
     }
-    for (const CLI::Option* option : options_of(command, true)) {
-        text += in_roff(option->get_name(true)) + (option->get_items_expected_max() > 1 ? "...\n" : "\n");
+    for (const Option& option : command.options()) {
+        if (option.is_positional()) {
+            text += in_roff(option.name()) + (option.max_values() > 1 ? "...\n" : "\n");
+        }
     }
     return text + "[OPTIONS]\n";
 }
@@ -79,57 +69,57 @@ std::string in_cell(const std::string& text) {
     return cell;
 }
 
-std::string markdown_options(const CLI::App& command) {
+std::string markdown_options(const Command& command) {
     std::string rows;
-    for (const CLI::Option* option : all_options_of(command)) {
-        if (option == command.get_help_ptr()) {
+    for (const Option& option : command.options()) {
+        if (option.name() == "--help") {
             continue;
         }
-        std::string name = spelled(*option);
+        std::string name = spelled(option);
         name.erase(std::min(name.find(':'), name.size()));  // a check follows, which the description says too
-        const std::string standard = option->get_default_str();
-        rows += fmt::format("| `{}` | {}{}{} |\n", in_cell(name), in_cell(option->get_description()),
+        const std::string standard = option.default_text();
+        rows += fmt::format("| `{}` | {}{}{} |\n", in_cell(name), in_cell(option.description()),
                             standard.empty() ? "" : "; default " + in_cell(standard),
-                            option->get_required() && !option->get_positional() ? " (required)" : "");
+                            option.is_required() && !option.is_positional() ? " (required)" : "");
     }
     return rows.empty() ? "" : "\n| | |\n| --- | --- |\n" + rows;
 }
 
 /// The page of a command for man(1), or of the whole program.
-std::string man_page(const CLI::App& command) {
-    const std::string name = with_dashes(full_name(command));
+std::string man_page(const Command& command) {
+    const std::string name = with_dashes(command.full_name());
     std::string title = name;
     std::transform(title.begin(), title.end(), title.begin(),
                    [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
     std::string page = fmt::format(".TH {} 1 \"\" \"Downwash {}\" \"Downwash\"\n", title, version());
-    page += fmt::format(".SH NAME\n{} \\- {}\n", in_roff(name), in_roff(command.get_description()));
+    page += fmt::format(".SH NAME\n{} \\- {}\n", in_roff(name), in_roff(command.description()));
     page += ".SH SYNOPSIS\n" + synopsis(command) + ".SH OPTIONS\n";
-    for (const CLI::Option* option : all_options_of(command)) {
-        page += entry(spelled(*option), option->get_description());
+    for (const Option& option : command.options()) {
+        page += entry(spelled(option), option.description());
     }
-    const auto below = commands_of(command);
+    const auto below = command.commands();
     page += below.empty() ? "" : ".SH COMMANDS\n";
-    for (const CLI::App* one : below) {
-        page += entry(full_name(*one), one->get_description());
+    for (const Command& one : below) {
+        page += entry(one.full_name(), one.description());
     }
-    if (!command.get_footer().empty()) {
-        page += ".SH EXIT STATUS\n" + in_roff(command.get_footer()) + "\n";
+    if (!command.footer().empty()) {
+        page += ".SH EXIT STATUS\n" + in_roff(command.footer()) + "\n";
     }
     return page;
 }
 
 /// Every command below the program with its options, as one page.
-std::string markdown_page(const CLI::App& program) {
+std::string markdown_page(const Command& program) {
     std::string contents;
     std::string sections;
-    for_each_command(program, [&](const CLI::App& command) {
-        if (command.get_parent() == nullptr) {
+    for_each_command(program, [&](const Command& command) {
+        if (command.is_program()) {
             return;
         }
-        const std::string name = full_name(command);
-        contents += fmt::format("| [`{}`](#{}) | {} |\n", name, with_dashes(name), in_cell(command.get_description()));
-        sections += fmt::format("\n## {}\n\n{}.\n\n```\n{}\n```\n{}", name, command.get_description(),
-                                usage_line(command), markdown_options(command));
+        const std::string name = command.full_name();
+        contents += fmt::format("| [`{}`](#{}) | {} |\n", name, with_dashes(name), in_cell(command.description()));
+        sections += fmt::format("\n## {}\n\n{}.\n\n```\n{}\n```\n{}", name, command.description(), command.usage(),
+                                markdown_options(command));
     });
     return fmt::format(
         "# Commands\n\n"
@@ -138,25 +128,25 @@ std::string markdown_page(const CLI::App& program) {
         "command, `{0} manual COMMAND | man -l -` shows it as a manual page, and `{0} completion bash` completes "
         "command lines.\n\n"
         "| command | |\n| --- | --- |\n{1}\n{2}\n{3}",
-        program.get_name(), contents, program.get_footer(), sections);
+        program.name(), contents, program.footer(), sections);
 }
 
-const CLI::App& command_named(const CLI::App& program, const std::vector<std::string>& names) {
-    const CLI::App* command = &program;
+Command command_named(const Command& program, const std::vector<std::string>& names) {
+    Command command = program;
     for (const std::string& name : names) {
-        const auto below = commands_of(*command);
+        const auto below = command.commands();
         const auto found =
-            std::find_if(below.begin(), below.end(), [&name](const CLI::App* one) { return one->get_name() == name; });
+            std::find_if(below.begin(), below.end(), [&name](const Command& one) { return one.name() == name; });
         if (found == below.end()) {
-            throw UsageError("there is no command '{} {}'", full_name(*command), excerpt(name));
+            throw UsageError("there is no command '{} {}'", command.full_name(), excerpt(name));
         }
         command = *found;
     }
-    return *command;
+    return command;
 }
 
 struct ManualArguments {
-    const CLI::App* program = nullptr;
+    Command program;
     std::vector<std::string> names;
     std::optional<std::string> all;
     bool is_markdown = false;
@@ -165,49 +155,50 @@ struct ManualArguments {
 ExitCode print_manual(const ManualArguments& given) {
     if (given.all) {
         const OutputFolder pages(*given.all);
-        for_each_command(*given.program, [&pages](const CLI::App& command) {
-            pages.write(with_dashes(full_name(command)) + ".1", man_page(command));
+        for_each_command(given.program, [&pages](const Command& command) {
+            pages.write(with_dashes(command.full_name()) + ".1", man_page(command));
         });
     } else {
-        fmt::print("{}", given.is_markdown ? markdown_page(*given.program)
-                                           : man_page(command_named(*given.program, given.names)));
+        fmt::print("{}", given.is_markdown ? markdown_page(given.program)
+                                           : man_page(command_named(given.program, given.names)));
     }
     return ExitCode::done;
 }
 
 struct CompletionArguments {
-    const CLI::App* program = nullptr;
+    Command program;
     std::string shell;
 };
 
 ExitCode print_completion(const CompletionArguments& given) {
-    fmt::print("{}", completion_script(*given.program, given.shell));
+    fmt::print("{}", completion_script(given.program, given.shell));
     return ExitCode::done;
 }
 
 }  // namespace
 
-void add_manual(CLI::App& program, Action& action) {
+void add_manual(Command program, Action& action) {
     auto [command, given] = add_command(
         program, action, "manual",
         "Print the manual page of a command (downwash manual solve | man -l -) or, without one, of the program",
         print_manual);
-    given.program = &program;
-    CLI::Option* one = command.add_option("COMMAND", given.names, "the command, for example: aeromap plot");
-    CLI::Option* pages = add_value(command, "--all DIR", given.all,
+    given.program = program;
+    Option one = command.add_option("COMMAND", given.names, "the command, for example: aeromap plot");
+    Option pages = command
+                       .add_option("--all DIR", given.all,
                                    "write the pages of all commands to a folder instead: downwash-solve.1...")
-                             ->excludes(one);
+                       .excludes(one);
     command.add_flag("--markdown", given.is_markdown, "Markdown instead of text; all commands as one page")
-        ->excludes(one)
-        ->excludes(pages);
+        .excludes(one)
+        .excludes(pages);
 }
 
-void add_completion(CLI::App& program, Action& action) {
+void add_completion(Command program, Action& action) {
     auto [command, given] = add_command(
         program, action, "completion",
         "Print a script that completes command lines in a shell: source <(downwash completion bash)", print_completion);
-    given.program = &program;
-    require_one_of(*command.add_option("SHELL", given.shell, "bash or zsh")->required(), {"bash", "zsh"});
+    given.program = program;
+    command.add_option("SHELL", given.shell, "bash or zsh").required().one_of({"bash", "zsh"});
 }
 
 }  // namespace downwash::cli

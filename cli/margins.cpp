@@ -82,11 +82,11 @@ ExitCode run(const MarginsArguments& given) {
 
 }  // namespace
 
-void add_margins(CLI::App& program, Action& action) {
+void add_margins(Command program, Action& action) {
     auto [command, given] =
         add_command(program, action, "margins",
                     "Print how far a robot's control loops are from instability: gain, phase and delay margins", run);
-    add_value(command, "ROBOT", given.robot, "robot file")->required();
+    command.add_option("ROBOT", given.robot, "robot file").placeholder("ROBOT").required();
     add_json(command, given.as_json);
 }
 

@@ -40,26 +40,27 @@ void require_entry(const Measurements& measurements, const std::string& file, co
                                    : "expected " + excerpt(joined_names(names)) + did_you_mean(entry, names));
 }
 
-void add_data_files(CLI::App& command, std::vector<std::string>& files) {
-    command.add_option("DATA", files, std::string(data_description) + "; several files are taken together")->required();
+void add_data_files(Command command, std::vector<std::string>& files) {
+    command.add_option("DATA", files, std::string(data_description) + "; several files are taken together").required();
 }
 
-void MeasuredData::add_options(CLI::App& command) {
-    command.add_option("DATA", file, data_description)->required();
+void MeasuredData::add_options(Command command) {
+    command.add_option("DATA", file, data_description).required();
     add_selection(command);
 }
 
-void MeasuredData::add_selection(CLI::App& command) {
-    CLI::Option* at = add_value(
-        command, "--surface S", surface,
+void MeasuredData::add_selection(Command command) {
+    Option at = command.add_option(
+        "--surface S", surface,
         "only measurements at this surface, `ground` or `ceiling`; without such a column, the surface of all rows");
-    offer_words(*at, measured_surfaces);
-    add_value(command, "--source NAME", source, "only measurements of this source");
-    add_value(command, "--from Z", from, "only measurements at this z/R and beyond");
-    add_value(command, "--to Z", to, "only measurements up to this z/R");
-    add_value(command, "--rotor-spacing D", rotor_spacing,
-              "spacing of adjacent axes of a square quadrotor in radii; that of the measured vehicle, multirotor "
-              "models need it");
+    at.offers(measured_surfaces);
+    command.add_option("--source NAME", source, "only measurements of this source");
+    command.add_option("--from Z", from, "only measurements at this z/R and beyond");
+    command.add_option("--to Z", to, "only measurements up to this z/R");
+    command.add_option(
+        "--rotor-spacing D", rotor_spacing,
+        "spacing of adjacent axes of a square quadrotor in radii; that of the measured vehicle, multirotor "
+        "models need it");
 }
 
 Measurements MeasuredData::read() const {

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "downwash/cli/command_line.hpp"
 #include "downwash/effects/measurements.hpp"
 #include "downwash/effects/rotor_layout.hpp"
 
@@ -16,7 +16,7 @@ namespace downwash::cli {
 inline constexpr std::array<std::string_view, 2> measured_surfaces{"ground", "ceiling"};
 
 /// Adds the argument DATA for several files of measurements.
-void add_data_files(CLI::App& command, std::vector<std::string>& files);
+void add_data_files(Command command, std::vector<std::string>& files);
 
 /// Checks that a selected entry occurs in a column. @throws UsageError when it does not
 /// @param column also the name of the option that selects   @param entry empty: none is selected
@@ -30,9 +30,9 @@ struct MeasuredData {
     std::optional<double> rotor_spacing;
 
     /// Adds DATA and the options to a command.
-    void add_options(CLI::App& command);
+    void add_options(Command command);
     /// The options without DATA.
-    void add_selection(CLI::App& command);
+    void add_selection(Command command);
 
     /// @throws InputError, UsageError when nothing is left
     [[nodiscard]] Measurements read() const;

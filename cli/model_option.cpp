@@ -71,18 +71,18 @@ SurfaceEffect effect_of(const ModelChoice& choice) {
 
 }  // namespace
 
-void offer_models(CLI::Option& option) {
-    offer_words(option, names_of(effect_models()));
+void offer_models(Option option) {
+    option.offers(names_of(effect_models()));
 }
 
-void add_model_options(CLI::App& command, ModelChoice& choice) {
-    add_value(command, "--set NAME=VALUE", choice.set,
-              "a parameter of the model, named as in a problem file; may be repeated");
-    add_value(command, "--table FILE", choice.table, "CSV file of the model `table`");
-    add_value(command, "--d-over-r D", choice.d_over_r, "second distance of a table over two, in radii");
-    add_value(command, "--rotor-spacing D", choice.rotor_spacing,
-              "spacing of adjacent axes of a square quadrotor in radii; for multirotor models, default 2.5");
-    add_value(command, "--max-factor K", choice.max_factor, "cap of K; default 2");
+void add_model_options(Command command, ModelChoice& choice) {
+    command.add_option("--set NAME=VALUE", choice.set,
+                       "a parameter of the model, named as in a problem file; may be repeated");
+    command.add_option("--table FILE", choice.table, "CSV file of the model `table`");
+    command.add_option("--d-over-r D", choice.d_over_r, "second distance of a table over two, in radii");
+    command.add_option("--rotor-spacing D", choice.rotor_spacing,
+                       "spacing of adjacent axes of a square quadrotor in radii; for multirotor models, default 2.5");
+    command.add_option("--max-factor K", choice.max_factor, "cap of K; default 2");
 }
 
 bool is_given(const ModelChoice& choice) {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "downwash/cli/command_line.hpp"
 #include "downwash/effects/effect_curve.hpp"
 
 namespace downwash::cli {
@@ -24,10 +24,10 @@ struct ModelChoice {
 inline constexpr double usual_rotor_spacing = 2.5;
 
 /// Makes shells offer the names of models.
-void offer_models(CLI::Option& option);
+void offer_models(Option option);
 
 /// Adds the options that go with --model NAME: --set, --table, --d-over-r, --rotor-spacing and --max-factor.
-void add_model_options(CLI::App& command, ModelChoice& choice);
+void add_model_options(Command command, ModelChoice& choice);
 
 /// Whether any of them was used.
 [[nodiscard]] bool is_given(const ModelChoice& choice);

@@ -84,17 +84,18 @@ void set(Problem& problem, const PlannerOption& option, const std::string& text)
 
 }  // namespace
 
-void PlannerOptions::add(CLI::App& command, std::string_view key) {
+void PlannerOptions::add(Command command, std::string_view key) {
     const auto option = *std::find_if(planner_options.begin(), planner_options.end(),
                                       [key](const PlannerOption& known) { return known.key == key; });
     const ParameterInfo& known = *problem_parameters().find(key);
     ParameterInfo parameter = known;
     parameter.can_be_group = false;  // an option is a word
-    CLI::Option* added = command.add_option_function<std::string>(
-        std::string(option.name), [this, option](const std::string& text) { given_[option.key] = text; },
-        fmt::format("{}{}: {}{} [{}]", option.meaning, parameter.description, expectation(parameter), option.note,
-                    option.key));
-    offer_words(*added->type_name(std::string(option.placeholder)), parameter.names);
+    const auto take = [this, key = option.key](const std::string& text) { given_[key] = text; };
+    command
+        .add_text(fmt::format("{} {}", option.name, option.placeholder), take,
+                  fmt::format("{}{}: {}{} [{}]", option.meaning, parameter.description, expectation(parameter),
+                              option.note, option.key))
+        .offers(parameter.names);
 }
 
 void PlannerOptions::apply_to(Problem& problem) const {

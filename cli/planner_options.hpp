@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <map>
 #include <string>
 #include <string_view>
 
+#include "downwash/cli/command_line.hpp"
 #include "downwash/problems/problem.hpp"
 
 namespace downwash::cli {
@@ -14,7 +14,7 @@ class PlannerOptions {
  public:
     /// Adds the option of a key: --margin for "planner.safety_margin_m".
     /// @pre the key has one; this object stays where it is as long as the command
-    void add(CLI::App& command, std::string_view key);
+    void add(Command command, std::string_view key);
 
     /// Overrides the settings of the file with the options that were given.
     /// @throws UsageError with every option whose value is invalid or out of range

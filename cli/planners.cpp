@@ -76,7 +76,7 @@ ExitCode run(const PlannersArguments& given) {
 
 }  // namespace
 
-void add_planners(CLI::App& program, Action& action) {
+void add_planners(Command program, Action& action) {
     auto [command, given] = add_command(program, action, "planners", "List the search algorithms", run);
     add_json(command, given.as_json);
 }

@@ -79,7 +79,7 @@ ExitCode run(const ReportArguments& given) {
 
 }  // namespace
 
-void add_report(CLI::App& program, Action& action) {
+void add_report(Command program, Action& action) {
     auto [command, given] = add_command(
         program, action, "report",
         "Show a run as one self-contained HTML page with scene, playback, plots and search; with --svg, --png or "

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <vector>
 
@@ -22,7 +21,7 @@ bool is_there(const fs::path& file) {
 
 }  // namespace
 
-void add_force(CLI::App& command, bool& force) {
+void add_force(Command command, bool& force) {
     command.add_flag("--force", force, "replace what is in the folder; even a run of another problem");
 }
 

@@ -3,19 +3,16 @@
 #include <filesystem>
 #include <string>
 
+#include "downwash/cli/command_line.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/results/run_folder.hpp"
 #include "downwash/results/run_record.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace downwash::cli {
 
 /// Adds --force.
-void add_force(CLI::App& command, bool& force);
+void add_force(Command command, bool& force);
 
 /// The folder for the results of a run. @throws UsageError with remedies if RunFolder cannot be made
 [[nodiscard]] RunFolder claimed_folder(const std::filesystem::path& path, const Problem& problem,

@@ -109,7 +109,7 @@ ExitCode run(const SolveArguments& given) {
 
 }  // namespace
 
-void add_solve(CLI::App& program, Action& action) {
+void add_solve(Command program, Action& action) {
     auto [command, given] =
         add_command(program, action, "solve",
                     "Plan with MP-ARM, the motion planner for aerial robotic manipulators, or its dynamics-aware "
@@ -125,20 +125,21 @@ void add_solve(CLI::App& program, Action& action) {
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
     add_force(command, given.force);
     add_wall_limit(command, given.limits.wall_s, "then the best plan so far is written");
-    add_value(
-        command, "--max-memory SIZE", given.limits.memory_bytes,
-        "memory of the whole command, as 500MiB or 4GiB; where a search grows beyond it, it ends, and the best plan "
-        "so far is written")
-        ->transform(CLI::AsSizeValue(false));
+    command
+        .add_option("--max-memory SIZE", given.limits.memory_bytes,
+                    "memory of the whole command, as 500MiB or 4GiB; where a search grows beyond it, it ends, and the "
+                    "best plan "
+                    "so far is written")
+        .in_bytes();
     command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
-    CLI::Option* remedies = command.add_flag(
+    Option remedies = command.add_flag(
         "--remedies", given.tries_remedies,
         "where no plan gets its certificate, try what would help: another place or tolerance of the "
         "goal, more margin, less speed, a stiffer controller, better knowledge; 5 s each, for each of several goals");
     add_json(command, given.as_json, "solution.json");
-    command.get_option("--json")->excludes(remedies);
+    command.option("--json").excludes(remedies);
 }
 
 }  // namespace downwash::cli

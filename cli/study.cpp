@@ -31,7 +31,7 @@ ExitCode run(const StudyArguments& given) {
 }
 
 /// Adds a study of the thesis' experiments.
-void add_thesis_study(CLI::App& parent, Action& action, const std::string& name, const std::string& about,
+void add_thesis_study(Command parent, Action& action, const std::string& name, const std::string& about,
                       studies::Study (*make_study)()) {
     auto [command, given] = add_command(parent, action, name, about, run);
     given.make_study = make_study;
@@ -43,7 +43,7 @@ void add_thesis_study(CLI::App& parent, Action& action, const std::string& name,
 
 }  // namespace
 
-void add_thesis_studies(CLI::App& study, Action& action) {
+void add_thesis_studies(Command study, Action& action) {
     add_thesis_study(study, action, "ceiling-envelope",
                      "Compare the rotors of a pitched vehicle under a ceiling (thesis 4.6, figure 4.9)",
                      studies::ceiling_envelope);

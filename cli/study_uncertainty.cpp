@@ -84,21 +84,22 @@ ExitCode run(const StudyUncertaintyArguments& given) {
 
 }  // namespace
 
-void add_study_uncertainty(CLI::App& study, Action& action) {
+void add_study_uncertainty(Command study, Action& action) {
     auto [command, given] =
         add_command(study, action, "uncertainty",
                     "Compare plans for the nominal world, with margins, in one pessimistic world and in "
                     "several worlds: how "
                     "often they are found and fail, what they cost. Continues with the results that are there",
                     run);
-    add_value(command, "--problem FILE...", given.problems, "problem files; default: all in the folder problems/");
-    add_value(command, "--seeds N", given.settings.seeds, "searches of each setup on each problem; default 20")
-        ->check(CLI::Range(1, 100000));
-    add_value(command, "--time-limit S", given.settings.time_limit_s, "wall time of a search [s]; default 5")
-        ->check(CLI::Range(0.01, 1e6));
-    add_value(command, "--worlds M", given.settings.worlds,
-              "fresh worlds in which every reported plan is flown; default 300")
-        ->check(CLI::Range(1, 1000000));
+    command.add_option("--problem FILE...", given.problems, "problem files; default: all in the folder problems/");
+    command.add_option("--seeds N", given.settings.seeds, "searches of each setup on each problem; default 20")
+        .in_range(1, 100000);
+    command.add_option("--time-limit S", given.settings.time_limit_s, "wall time of a search [s]; default 5")
+        .in_range(0.01, 1e6);
+    command
+        .add_option("--worlds M", given.settings.worlds,
+                    "fresh worlds in which every reported plan is flown; default 300")
+        .in_range(1, 1000000);
     add_jobs(command, given.settings.jobs, "one per processor");
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/study-uncertainty/");
     add_no_cache(command, given.no_cache);

@@ -141,7 +141,7 @@ ExitCode run(const ValidateArguments& given) {
 
 }  // namespace
 
-void add_validate(CLI::App& program, Action& action) {
+void add_validate(Command program, Action& action) {
     auto [command, given] =
         add_command(program, action, "validate",
                     "Fly a plan with an independent simulator and compare the flight with what the plan's file says; "
@@ -149,10 +149,10 @@ void add_validate(CLI::App& program, Action& action) {
                     run);
     add_problem(command, given.problem);
     add_plan(command, given.plan);
-    add_value(command, "--runs N", given.runs, "fly in the worlds 1 to N of the problem's uncertainty as well");
-    add_value(command, "--world I", given.world,
-              "world I of the problem's uncertainty to fly in; default: the nominal one");
-    add_value(command, "--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
+    command.add_option("--runs N", given.runs, "fly in the worlds 1 to N of the problem's uncertainty as well");
+    command.add_option("--world I", given.world,
+                       "world I of the problem's uncertainty to fly in; default: the nominal one");
+    command.add_option("--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
     add_out(command, "DIR", given.out,
             "folder for validation.json, what --json prints, and the page validation.html; default: no files");
     add_threads(command, given.threads);
