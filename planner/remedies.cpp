@@ -8,6 +8,7 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash {
 namespace {
@@ -120,28 +121,21 @@ void stiffen_law(Problem& problem) {
     std::visit([](auto& law) { stiffen(law); }, problem.robot.controller.law);
 }
 
-/// All spreads half as wide, around what is believed.
+/// All spreads half as wide, around the nominal number.
 void know_better(Problem& problem) {
-    Uncertainty& uncertainty = *problem.uncertainty;
-    std::vector<Spread Uncertainty::*> done;
-    for (const WorldParameter& parameter : world_parameters()) {
-        if (std::ranges::find(done, parameter.spread) != done.end()) {
-            continue;  // of several numbers
+    for (const UncertaintyKey& key : uncertainty_keys()) {
+        if (key.spread == nullptr) {
+            continue;
         }
-        done.push_back(parameter.spread);
-        Spread& spread = uncertainty.*parameter.spread;
+        Spread& spread = (*problem.uncertainty).*key.spread;
         double middle = 0;
         if (spread.form == Spread::Form::factor) {
             middle = 1;
-        } else if (spread.form == Spread::Form::range && parameter.believed != nullptr) {
-            middle = parameter.believed(problem.robot);
+        } else if (spread.form == Spread::Form::range && key.nominal != nullptr) {
+            middle = key.nominal(problem.robot);
         }
         spread.low = 0.5 * (middle + spread.low);
         spread.high = 0.5 * (middle + spread.high);
-    }
-    for (Spread* noise : {&uncertainty.position_noise_m, &uncertainty.velocity_noise_m_s, &uncertainty.gyro_noise_rad_s,
-                          &uncertainty.gust_m_s}) {
-        noise->high *= 0.5;
     }
 }
 

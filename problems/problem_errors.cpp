@@ -22,6 +22,7 @@
 #include "downwash/scene/collision_checker.hpp"
 #include "downwash/simulation/flight_model.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash {
 namespace {

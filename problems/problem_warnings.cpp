@@ -10,7 +10,7 @@
 #include "downwash/problems/problem.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/loop_margins.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash {
 namespace {

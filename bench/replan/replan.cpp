@@ -16,7 +16,7 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/execution.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 using namespace downwash;
 

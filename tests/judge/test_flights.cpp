@@ -12,7 +12,7 @@
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/visit_order.hpp"
 #include "downwash/simulation/execution.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 #include "shipped.hpp"
 
 // The judge's flights against the planner's.

@@ -16,6 +16,7 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 // What plans are worth in other worlds than the nominal one.
 

@@ -86,7 +86,7 @@ TEST_CASE("a problem takes over what its robot says of its own uncertainty, but 
 
 TEST_CASE("the shipped robot states the defaults of its uncertainty to the last bit") {
     const Robot robot = read_robot(std::filesystem::path(DOWNWASH_PROBLEMS) / "robots/ars_lrm.yaml");
-    CHECK(robot.uncertainty.value() == RobotUncertainty{});
+    CHECK(robot.uncertainty.value() == Uncertainty{});
 }
 
 TEST_CASE("keys are read by their former names, which are reported") {

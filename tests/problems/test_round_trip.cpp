@@ -103,7 +103,7 @@ class ProblemMaker {
         }
         problem.aero.max_factor = 1 + uniform();
         if (coin()) {
-            RobotUncertainty& own = problem.robot.uncertainty.emplace();
+            Uncertainty& own = problem.robot.uncertainty.emplace();
             own.mass_scale = Spread::of_sd(0.1 * uniform());
             own.pitch_bias_rad = coin() ? Spread::of_sd(0.05 * uniform()) : Spread::over(-0.1 * uniform(), 0.1);
             own.delay_s = coin() ? Spread() : Spread::of_factor(uniform(), 1 + uniform());
