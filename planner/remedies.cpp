@@ -13,56 +13,20 @@
 namespace downwash {
 namespace {
 
-/// Calls `change(goal)` with every end-effector or configuration goal, stops, targets and alternatives included. The
-/// place to return to stays.
+/// Calls `change(goal)` with the goal, every stop and every target. The place to return to stays.
 template <class Change>
 void change_goals(Problem& problem, const Change& change) {
-    const auto change_one = [&](Goal& goal) {
-        if (goal.end_effector) {
-            change(*goal.end_effector);
-        }
-        if (goal.configuration) {
-            change(*goal.configuration);
-        }
-    };
-    const auto change_all = [&](Goal& goal) {
-        change_one(goal);
-        std::ranges::for_each(goal.any_of, change_one);
-    };
-    std::ranges::for_each(problem.stops, change_all);
-    std::ranges::for_each(problem.targets, change_all);
-    change_all(problem.goal);
+    std::ranges::for_each(problem.stops, change);
+    std::ranges::for_each(problem.targets, change);
+    change(problem.goal);
 }
 
-/// To the millimetre, as the error that may come of it prints it.
-double raised(double from_m, double by_m) {
-    return std::round(1e3 * (from_m + by_m)) / 1e3;
-}
-
-void raise(EndEffectorGoal& goal, double z_m) {
-    goal.z_m = raised(goal.z_m, z_m);
-}
-
-void raise(ConfigurationGoal& goal, double z_m) {
-    if (goal.z_m) {
-        goal.z_m = raised(*goal.z_m, z_m);
-    }
-}
-
-void raise_goals(Problem& problem, double z_m) {
-    change_goals(problem, [z_m](auto& goal) { raise(goal, z_m); });
+void raise_goals(Problem& problem, double by_m) {
+    change_goals(problem, [by_m](Goal& goal) { raise_goal(goal, by_m); });
 }
 
 void widen_tolerances(Problem& problem) {
-    constexpr double factor = 1.5;
-    change_goals(problem, [](auto& goal) {
-        goal.tolerance_m *= factor;
-        for (std::optional<double>* tolerance : {&goal.tolerance_x_m, &goal.tolerance_z_m}) {
-            if (*tolerance) {
-                **tolerance *= factor;
-            }
-        }
-    });
+    change_goals(problem, [](Goal& goal) { widen_goal(goal, 1.5); });
 }
 
 /// Time scaled by 2: the same ways at half the speed.

@@ -98,13 +98,13 @@ struct Problem {
     Bounds bounds;
     std::vector<Obstacle> obstacles;
     AeroSettings aero;
-    std::optional<Uncertainty> uncertainty;  ///< nothing: everything is as believed
+    std::optional<Uncertainty> uncertainty;  ///< Nothing: everything is nominal.
     Start start;
     std::vector<Goal> stops;  ///< goals to be reached and held before `goal`, in this order, without alternatives
     Goal goal;
     std::vector<Goal>
         targets;  ///< goals in an order that the planner chooses; if there are any, they replace the above
-    std::optional<Goal> return_to;  ///< configuration to be reached and held after the targets
+    std::optional<Goal> return_to;  ///< A configuration to be reached and held after the targets.
     std::optional<double>
         energy_budget_j;  ///< no flight may take more, > 0; targets that it does not allow are left out
     MotionLimits motion;

@@ -14,6 +14,7 @@
 #include "downwash/grids/factor_grid.hpp"
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/goal_errors.hpp"
+#include "downwash/problems/goal_kinds.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/problem_model.hpp"

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <variant>
 
 #include "downwash/base/text.hpp"
 #include "downwash/problems/problem_check.hpp"
@@ -193,13 +194,13 @@ class TouchSearch {
         const PlaneVector waiting{touch.surface_m.x + contact_.standoff_m * touch.normal.x,
                                   touch.surface_m.z + contact_.standoff_m * touch.normal.z};
         if (frame_points_m_.empty()) {
-            EndEffectorGoal& tip = goal.end_effector.emplace();
+            auto& tip = goal.kind.emplace<EndEffectorGoal>();
             tip.x_m = waiting.x;
             tip.z_m = waiting.z;
             tip.tolerance_m = contact_.tolerance_m;
             tip.direction_rad = way.arm_rad;
         } else {
-            ConfigurationGoal& vehicle = goal.configuration.emplace();
+            auto& vehicle = goal.kind.emplace<ConfigurationGoal>();
             vehicle.x_m = waiting.x;
             vehicle.z_m = waiting.z - frame_points_m_.front().z;
             vehicle.tolerance_m = contact_.tolerance_m;
@@ -213,7 +214,7 @@ class TouchSearch {
     bool is_usable(const Goal& goal, const Way& way) {
         const PlantModel plant = make_plant_model(problem_.robot.multirotor, problem_.robot.arm, problem_.robot.rotors);
         Configuration waiting = problem_.start.configuration();
-        if (goal.end_effector) {
+        if (part_of(goal) == GoalPart::end_effector) {
             waiting[plane::arm] = way.arm_rad;
         }
         waiting = placed_at(goal, plant, waiting, 0, 0);
@@ -300,11 +301,11 @@ class TouchSearch {
 }  // namespace
 
 TouchPlaces find_touches(const ProblemCheck& check) {
-    return TouchSearch(check, check.problem().goal.contact.value()).places();
+    return TouchSearch(check, std::get<ContactGoal>(check.problem().goal.kind)).places();
 }
 
 Problem with_touches(Problem problem) {
-    if (problem.goal.contact) {
+    if (asks_for_contact(problem.goal)) {
         std::vector<Goal> places = find_touches(ProblemCheck(problem)).places;
         problem.goal.any_of = std::move(places);
     }

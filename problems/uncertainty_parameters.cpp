@@ -24,7 +24,7 @@ Uncertainty& uncertainty_of(Problem& problem) {
 
 void add_uncertainty_rows(std::vector<Parameter<Problem>>& rows) {
     rows.push_back(parameters::group<Problem>(
-                       "uncertainty", "what is not known exactly; plans survive it. none: everything is as believed",
+                       "uncertainty", "what is not known exactly; plans survive it. none: everything is nominal",
                        [](const Problem& p, std::size_t) { return p.uncertainty.has_value(); },
                        [](Problem& p, std::size_t, bool is_there) {
                            p.uncertainty.reset();

@@ -66,7 +66,7 @@ Tables made_tables() {
                  &U::ceiling_scale, {{"", &W::ceiling_scale, {far, 1 - far, 0.85, 0.85}}});
     t.difference("aero.ground_scale", "relative change of K - 1 above surfaces", 0.9, &U::ground_scale,
                  {{"", &W::ground_scale, {far, 1 - far}}});
-    t.group("aero.scene_offset_m", "where the surfaces are, from where they are believed to be");
+    t.group("aero.scene_offset_m", "where the surfaces are, from where they nominally are");
     t.difference("aero.scene_offset_m.x", "along the plane [m]", 10, &U::scene_x_m,
                  {{"", &W::scene_x_m, {.forward = far, .backward = 1 - far}}});
     t.difference("aero.scene_offset_m.z", "upwards [m]", 10, &U::scene_z_m,
