@@ -31,7 +31,7 @@ void add_kinds(Rows& rows, const std::string& path, GoalMember goal) {
     add(rows, goal_kind_rows(false), path, goal);
 }
 
-/// The same for the only goal, which is there unless targets replace it.
+/// Every kind of goal for the only goal, which is there unless targets replace it.
 template <class GoalMember>
 void add_kinds_of_only(Rows& rows, const std::string& path, GoalMember goal) {
     const auto first = static_cast<std::ptrdiff_t>(rows.size());

@@ -126,7 +126,7 @@ std::vector<HoldingGain> holding_gains(const CascadedPid& law) {
             {"controller.joint.kd", law.joint_kd}};
 }
 
-/// Of other laws nothing is known.
+/// Nothing is known about the gains of other laws.
 template <class Law>
 std::vector<HoldingGain> holding_gains(const Law& /*law*/) {
     return {};

@@ -15,7 +15,7 @@ using Nominal = double (*)(const Robot&);
 
 /// A number of the worlds that a key stands for.
 struct Drawn {
-    std::string_view suffix;  ///< of the key, in the parameter's name
+    std::string_view suffix;  ///< What the parameter's name has behind the key.
     double World::*value;
     DangerQuantiles danger = {};
 };
