@@ -344,12 +344,12 @@ Parameter<Model> file(std::string_view path, std::string_view description, PathO
 
 /// A function of a part as one of the whole; empty if the part's is.
 template <class Whole, class Member, class Result, class Part, class... Arguments>
-auto through(const Member& member, const std::function<Result(Part&, Arguments...)>& of_part) {
+auto through(const Member& member, const std::function<Result(Part&, std::size_t, Arguments...)>& of_part) {
     using Of = std::conditional_t<std::is_const_v<Part>, const Whole, Whole>;
-    std::function<Result(Of&, Arguments...)> of_whole;
+    std::function<Result(Of&, std::size_t, Arguments...)> of_whole;
     if (of_part) {
-        of_whole = [member, of_part](Of& whole, Arguments... arguments) {
-            return of_part(member(whole), arguments...);
+        of_whole = [member, of_part](Of& whole, std::size_t i, Arguments... arguments) {
+            return of_part(at(member, whole, i), i, arguments...);
         };
     }
     return of_whole;

@@ -6,7 +6,7 @@
 
 namespace downwash {
 
-double Spread::difference(double p, double believed, bool range_is_of_number) const noexcept {
+double Spread::difference(double p, double nominal, bool range_is_of_number) const noexcept {
     switch (form) {
         case Form::sd: {
             constexpr double cut = 3;
@@ -15,9 +15,9 @@ double Spread::difference(double p, double believed, bool range_is_of_number) co
             return high * std::clamp(x, -cut, cut);
         }
         case Form::range:
-            return low + p * (high - low) - (range_is_of_number ? believed : 0);
+            return low + p * (high - low) - (range_is_of_number ? nominal : 0);
         case Form::factor:
-            return (low + p * (high - low)) * believed - believed;
+            return (low + p * (high - low)) * nominal - nominal;
         case Form::exact:
             break;
     }

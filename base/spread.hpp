@@ -7,14 +7,14 @@
 
 namespace downwash {
 
-/// How far a number may be from what is believed: a distribution, cut where it has an end.
+/// How far a number may be from its nominal value: a distribution, cut where it has an end.
 struct Spread {
     /// What `low` and `high` are.
     enum class Form : std::uint8_t {
-        exact,   ///< nothing: the number is as believed
-        sd,      ///< high is the standard deviation of a normal distribution around what is believed, cut at 3 of them
-        range,   ///< uniform from low to high
-        factor,  ///< uniform from low to high times what is believed
+        exact,   ///< The number is nominal.
+        sd,      ///< Normal around the nominal value with the standard deviation `high`, cut at 3 of them.
+        range,   ///< Uniform from low to high.
+        factor,  ///< Uniform from low to high times the nominal value.
     };
     Form form = Form::exact;
     double low = 0;
@@ -26,10 +26,10 @@ struct Spread {
         return {Form::factor, low, high};
     }
 
-    /// The difference from what is believed that is not exceeded with probability p.
-    /// @param p from 0 to 1; both ends give the ends of the spread   @param believed the number itself, for a range of
+    /// The difference from the nominal value that is not exceeded with probability p.
+    /// @param p from 0 to 1; both ends give the ends of the spread   @param nominal the value itself, for a range of
     /// the number (`range_is_of_number`) and for factors
-    [[nodiscard]] DOWNWASH_EXPORT double difference(double p, double believed, bool range_is_of_number) const noexcept;
+    [[nodiscard]] DOWNWASH_EXPORT double difference(double p, double nominal, bool range_is_of_number) const noexcept;
 
     friend constexpr bool operator==(const Spread&, const Spread&) = default;
 };

@@ -4,17 +4,15 @@
 #include <utility>
 
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::bench {
 namespace {
 
 /// The world in which one parameter is at a quantile of its spread and all else is nominal, noise included.
 World world_of(const WorldParameter& parameter, const Uncertainty& uncertainty, const Robot& robot, double at) {
-    const bool is_of_robot = parameter.believed != nullptr;
-    const double value =
-        (uncertainty.*parameter.spread).difference(at, is_of_robot ? parameter.believed(robot) : 0, is_of_robot);
     World world;
-    (parameter.value != nullptr ? world.*parameter.value : world.rotor_thrust_scale[parameter.rotor]) = value;
+    parameter.put(world, uncertainty, robot, at);
     return world;
 }
 

@@ -21,6 +21,7 @@
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/results/run_record.hpp"
 #include "downwash/results/solution_file.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/claims.hpp"
 #include "downwash/results/solution_file.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::cli {
 namespace {

@@ -14,7 +14,7 @@
 #include "downwash/report/run_page.hpp"
 #include "downwash/report/validation_page.hpp"
 #include "downwash/results/solution_file.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::cli {
 namespace {

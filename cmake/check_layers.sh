@@ -42,7 +42,7 @@ one_library='search rivals planner ompl'
 # and the random numbers of worlds, and nothing else.
 judge_may='controllers/plan.hpp controllers/configuration.hpp controllers/reference_point.hpp dynamics/plant.hpp
 dynamics/plant_model.hpp scene/planar_pose.hpp scene/plane_of_motion.hpp scene/shapes.hpp simulation/flight_model.hpp
-simulation/contact_goal.hpp simulation/goal.hpp simulation/noise.hpp simulation/robot.hpp simulation/uncertainty.hpp simulation/world.hpp results/claims.hpp'
+simulation/contact_goal.hpp simulation/goal.hpp simulation/noise.hpp simulation/robot.hpp simulation/uncertainty.hpp simulation/world.hpp simulation/world_parameters.hpp results/claims.hpp'
 
 # The headers that a module keeps to itself stand behind PRIVATE_HEADERS in its CMakeLists.txt.
 private_headers() {

@@ -22,7 +22,7 @@ const Plan& plan_to_be_flown(const RunRecord& run) {
     if (!run.plan) {
         throw_input_error("this run found no plan, so there is nothing to fly");
     }
-    if (run.problem.goal.contact) {
+    if (asks_for_contact(run.problem.goal)) {
         throw_input_error(
             "the flight ends with a touch (goal.contact), which follows the measured force: set-points and missions "
             "cannot say that. The formats vtp and glb have the whole flight");

@@ -49,7 +49,7 @@ double rotor_lead_of(const Robot& robot) {
 struct ControlLaw::Inversion {
     Matrix4 mass;
     Vector4 bias;
-    double sine, cosine;  ///< of the pitch
+    double sine, cosine;  ///< Sine and cosine of the pitch.
 
     Inversion(const Vehicle& v, const Motion& seen) : sine(std::sin(seen.pitch_rad)), cosine(std::cos(seen.pitch_rad)) {
         const Planar r = from_body(v.joint_m, seen.pitch_rad);
@@ -90,7 +90,7 @@ struct ControlLaw::Tilt {
     bool is_clipped;
 };
 
-/// Of the joint a law demands an acceleration, or a torque.
+/// What a law demands of the joint: an acceleration, or a torque.
 struct ControlLaw::Demand {
     double thrust_n, pitch_torque_nm;
     std::optional<double> arm_acceleration, joint_torque_nm;
@@ -110,27 +110,27 @@ struct ControlLaw::Rotors {
 
 ControlLaw::ControlLaw(const Robot& robot)
     : robot_(robot),
-      believed_(vehicle_in({}, robot)),
+      nominal_vehicle_(vehicle_in({}, robot)),
       tick_s_(1 / robot.controller.rate_hz),
       rotor_lead_(rotor_lead_of(robot)),
       feed_forward_(controllers::aids_of(robot.controller.law).feed_forward),
       has_observer_(observer_gain_1_s(robot) > 0),
-      observer_(believed_, observer_gain_1_s(robot), tick_s_) {
-    Eigen::MatrixXd rows(2, believed_.rotor_count);
-    for (int i = 0; i < believed_.rotor_count; ++i) {
+      observer_(nominal_vehicle_, observer_gain_1_s(robot), tick_s_) {
+    Eigen::MatrixXd rows(2, nominal_vehicle_.rotor_count);
+    for (int i = 0; i < nominal_vehicle_.rotor_count; ++i) {
         rows(0, i) = 1;
-        rows(1, i) = -believed_.hub_m[static_cast<std::size_t>(i)].x;
+        rows(1, i) = -nominal_vehicle_.hub_m[static_cast<std::size_t>(i)].x;
     }
     const Eigen::MatrixXd inverse = rows.completeOrthogonalDecomposition().pseudoInverse();
-    for (int i = 0; i < believed_.rotor_count; ++i) {
+    for (int i = 0; i < nominal_vehicle_.rotor_count; ++i) {
         share_[static_cast<std::size_t>(i)] = {inverse(i, 0), inverse(i, 1)};
     }
 }
 
 std::array<double, max_rotors> ControlLaw::resting_thrust_n() const noexcept {
     std::array<double, max_rotors> thrust_n{};
-    for (std::size_t i = 0; i < static_cast<std::size_t>(believed_.rotor_count); ++i) {
-        thrust_n[i] = share_[i][0] * believed_.mass_kg() * standard_gravity_m_s2;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(nominal_vehicle_.rotor_count); ++i) {
+        thrust_n[i] = share_[i][0] * nominal_vehicle_.mass_kg() * standard_gravity_m_s2;
     }
     return thrust_n;
 }
@@ -145,7 +145,7 @@ ControlMemory ControlLaw::memory_at_start(const Motion& motion) const {
         still.velocity_m_s = {};
         still.pitch_rate_rad_s = 0;
         still.arm_rate_rad_s = 0;
-        const Four weight = free_momentum_rate(believed_, still);
+        const Four weight = free_momentum_rate(nominal_vehicle_, still);
         const auto carrying = [](double ki, double limit, double torque) {
             return ki > 0 ? std::clamp(torque, -limit, limit) / ki : 0;
         };
@@ -162,7 +162,7 @@ ControlLaw::Demand ControlLaw::cascaded(const CascadedPid& gain, const Motion& s
                                         ControlMemory& kept, ControlMemory& integrated) const {
     const double dt = tick_s_;
     const Four& other = kept.observed.estimate;  // zero without an observer
-    const double m = believed_.mass_kg();
+    const double m = nominal_vehicle_.mass_kg();
     const auto velocity_error = [&](int axis, double kp, double place, double speed) {
         return reference.velocity[axis] + kp * (reference.position[axis] - place) - speed;
     };
@@ -212,7 +212,7 @@ ControlLaw::Tilt ControlLaw::tilt(const Gain& gain, const Inversion& inversion, 
                                   const ControlMemory& kept) const {
     // Rows 1 and 2 with (v1, v3, 0, v7).
     const Vector4 force = inversion.mass * Vector4(wanted.v1, wanted.v3, 0, wanted.v7) + inversion.bias;
-    const double min_force_z = gain.min_vertical_force_ratio * believed_.mass_kg() * standard_gravity_m_s2;
+    const double min_force_z = gain.min_vertical_force_ratio * nominal_vehicle_.mass_kg() * standard_gravity_m_s2;
     const double whole = std::atan2(force(0), std::max(force(1), min_force_z));
     const double reference = std::clamp(whole, -gain.max_tilt_rad, gain.max_tilt_rad);
     const double raw_rate = (reference - kept.pitch_reference_rad) / tick_s_;
@@ -303,18 +303,18 @@ ControlLaw::Demand ControlLaw::demand(const Motion& seen, const ReferencePoint& 
 }
 
 /// docs/model.md 5.7: in free air, and without a feed-forward, K = 1.
-ControlLaw::Read ControlLaw::read(const Motion& seen, const Surroundings& believed) const {
+ControlLaw::Read ControlLaw::read(const Motion& seen, const Surroundings& nominal) const {
     Read read;
     read.ratio.fill(1);
     if (feed_forward_) {
         const Planar from = seen.position_m - Planar{feed_forward_->offset_x_m, feed_forward_->offset_z_m};
-        for (int i = 0; i < believed_.rotor_count; ++i) {
+        for (int i = 0; i < nominal_vehicle_.rotor_count; ++i) {
             const auto k = static_cast<std::size_t>(i);
-            const Planar hub = from + from_body(believed_.hub_m[k], seen.pitch_rad);
-            read.ratio[k] = std::max(believed.thrust_ratio(i, hub, seen.pitch_rad), 0.1);
+            const Planar hub = from + from_body(nominal_vehicle_.hub_m[k], seen.pitch_rad);
+            read.ratio[k] = std::max(nominal.thrust_ratio(i, hub, seen.pitch_rad), 0.1);
         }
-        const Planar center = from + from_body(believed_.hub_center_m, seen.pitch_rad);
-        read.fountain = believed.fountain(believed_.rotor_count, center, seen.pitch_rad);
+        const Planar center = from + from_body(nominal_vehicle_.hub_center_m, seen.pitch_rad);
+        read.fountain = nominal.fountain(nominal_vehicle_.rotor_count, center, seen.pitch_rad);
     }
     return read;
 }
@@ -322,15 +322,15 @@ ControlLaw::Read ControlLaw::read(const Motion& seen, const Surroundings& believ
 /// Allocates and clips.
 ControlLaw::Rotors ControlLaw::limit(const Demand& demand, const Read& read,
                                      const std::array<double, max_rotors>& rotor_n, Command& command) const {
-    const auto count = static_cast<std::size_t>(believed_.rotor_count);
+    const auto count = static_cast<std::size_t>(nominal_vehicle_.rotor_count);
     // What a thrust and a torque, shared out and divided by K, would act as: their multiples have to act as demanded.
     const auto acting = [&](const auto& free_air_n) {
         Eigen::Vector2d sum(0, 0);
         for (std::size_t i = 0; i < count; ++i) {
             const double at_rotor_n = read.ratio[i] * free_air_n(i);
             const double at_body_n = read.fountain * free_air_n(i);
-            sum += Eigen::Vector2d(at_rotor_n + at_body_n,
-                                   -(believed_.hub_m[i].x * at_rotor_n + believed_.hub_center_m.x * at_body_n));
+            sum += Eigen::Vector2d(at_rotor_n + at_body_n, -(nominal_vehicle_.hub_m[i].x * at_rotor_n +
+                                                             nominal_vehicle_.hub_center_m.x * at_body_n));
         }
         return sum;
     };
@@ -342,7 +342,7 @@ ControlLaw::Rotors ControlLaw::limit(const Demand& demand, const Read& read,
 
     const double low_n = robot_.rotors.min_thrust_n;
     const double high_n = robot_.rotors.max_thrust_n;
-    const double lag_s = believed_.rotor_time_constant_s;
+    const double lag_s = nominal_vehicle_.rotor_time_constant_s;
     const double reached = 0.5 * tick_s_ / (0.5 * tick_s_ + lag_s);  // of the way, in mid-tick
     const double lead = lag_s > 0 ? rotor_lead_ : 0;
     Rotors rotors;
@@ -354,9 +354,9 @@ ControlLaw::Rotors ControlLaw::limit(const Demand& demand, const Read& read,
         const double now_n = lag_s > 0 ? rotor_n[i] : command.thrust_n[i];
         expected_n[i] = now_n + reached * (command.thrust_n[i] - now_n);
     }
-    const Eigen::Vector2d believed = acting([&](std::size_t i) { return expected_n[i]; });
-    rotors.thrust_n = believed(0);
-    rotors.pitch_torque_nm = believed(1);
+    const Eigen::Vector2d expected = acting([&](std::size_t i) { return expected_n[i]; });
+    rotors.thrust_n = expected(0);
+    rotors.pitch_torque_nm = expected(1);
     return rotors;
 }
 
@@ -394,9 +394,8 @@ void ControlLaw::stand_still(const ControlMemory& before, const Motion& from, co
 }
 
 Command ControlLaw::command(const Motion& seen, const std::array<double, max_rotors>& rotor_n,
-                            const ReferencePoint& reference, const Surroundings& believed,
-                            ControlMemory& memory) const {
-    Inversion inversion(believed_, seen);
+                            const ReferencePoint& reference, const Surroundings& nominal, ControlMemory& memory) const {
+    Inversion inversion(nominal_vehicle_, seen);
     ControlMemory kept = memory;
     if (has_observer_) {
         observer_.look(seen, kept.observed);
@@ -406,7 +405,7 @@ Command ControlLaw::command(const Motion& seen, const std::array<double, max_rot
     ControlMemory integrated;
     const Demand demand = this->demand(seen, reference, inversion, kept, integrated);
     Command command;
-    const Rotors rotors = limit(demand, read(seen, believed), rotor_n, command);
+    const Rotors rotors = limit(demand, read(seen, nominal), rotor_n, command);
     double joint_nm = 0;
     if (demand.joint_torque_nm) {
         joint_nm = *demand.joint_torque_nm;

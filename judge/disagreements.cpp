@@ -13,7 +13,7 @@ namespace downwash::judge {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-/// Of coordinates that should be the same; files hold all digits.
+/// Greatest difference of coordinates that should be the same; files hold all digits.
 constexpr double rounding = 1e-9;
 
 bool is_same(double a, double b) {

@@ -10,9 +10,9 @@ namespace {
 
 /// From the joint, and from it to the centre of mass of the arm.
 struct Levers {
-    Planar to_joint;        ///< from the multirotor's centre of mass
-    Planar arm_from_joint;  ///< from the joint to the arm's centre of mass
-    double arm_rate_rad_s;  ///< of the arm against the world
+    Planar to_joint;        ///< From the multirotor's centre of mass.
+    Planar arm_from_joint;  ///< From the joint to the arm's centre of mass.
+    double arm_rate_rad_s;  ///< Rate of the arm against the world.
 };
 
 Levers levers_of(const Vehicle& vehicle, const Motion& motion) {

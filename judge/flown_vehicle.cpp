@@ -7,7 +7,7 @@
 namespace downwash::judge {
 namespace {
 
-/// Of a vehicle in a world, docs/model.md 9.
+/// How long a vehicle in a world has hovered at its start (docs/model.md 9).
 constexpr double hover_before_start_s = 20;
 
 }  // namespace
@@ -31,10 +31,10 @@ FlownVehicle::FlownVehicle(const Setting& setting, const FlightConditions& condi
       effects_(conditions.aero && setting.problem.aero.enabled ? &setting.effects : nullptr),
       vehicle_(vehicle_in(world_, setting.problem.robot)),
       surroundings_(effects_, world_),
-      believed_(effects_, nominal_),
+      nominal_surroundings_(effects_, nominal_),
       plant_(vehicle_, surroundings_),
       begin_(begin(setting, conditions.world && is_at_rest(setting.problem.start))),
-      loop_(setting.law, believed_, plant_, world_, setting.problem.robot, begin_.state, begin_.memory),
+      loop_(setting.law, nominal_surroundings_, plant_, world_, setting.problem.robot, begin_.state, begin_.memory),
       umpire_(setting.problem, effects_, setting.obstacles, world_, flight_) {
     if (!begin_.is_stable) {
         flight_.outcome = Outcome::unstable;
@@ -51,7 +51,7 @@ FlownVehicle::Begin FlownVehicle::begin(const Setting& setting, bool hovers) con
     }
     const World quiet = without_noise(world_);
     const ReferencePoint here = at_rest(start.configuration());
-    Loop hover(setting.law, believed_, plant_, quiet, setting.problem.robot, begin.state, begin.memory);
+    Loop hover(setting.law, nominal_surroundings_, plant_, quiet, setting.problem.robot, begin.state, begin.memory);
     const std::int64_t ticks = std::llround(hover_before_start_s / setting.law.tick_s());
     for (std::int64_t tick = 0; tick < ticks; ++tick) {
         hover.next(tick, here);

@@ -42,7 +42,7 @@ class FlownVehicle {
     [[nodiscard]] JudgedFlight& flight() noexcept { return flight_; }
     [[nodiscard]] const JudgedFlight& flight() const noexcept { return flight_; }
     [[nodiscard]] const World& world() const noexcept { return world_; }
-    /// The same plant, touching something. @pre the surface and this outlive it
+    /// The plant of this vehicle, touching something. @pre the surface and this outlive it
     [[nodiscard]] Plant touching(const TouchSurface& surface) const { return {vehicle_, surroundings_, &surface}; }
 
  private:
@@ -58,7 +58,7 @@ class FlownVehicle {
     World nominal_;
     const SurfaceEffects* effects_;
     Vehicle vehicle_;
-    Surroundings surroundings_, believed_;
+    Surroundings surroundings_, nominal_surroundings_;
     Plant plant_;
     Begin begin_;
     JudgedFlight flight_;

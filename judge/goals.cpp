@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <variant>
 
 #include "downwash/judge/vehicle.hpp"
 
@@ -28,19 +29,29 @@ GoalDistance distance_of(const Kind& goal, double dx, double dz, double angle_ra
     return d;
 }
 
+Planar tip_of(const ArmParameters& arm, const PlanarPose& pose) {
+    return Planar{pose.x_m, pose.z_m} + from_body({arm.joint_x_m, arm.joint_z_m}, pose.pitch_rad) +
+           arm.length_m * arm_direction(pose.pitch_rad, pose.arm_rad);
+}
+
+GoalDistance distance(const ConfigurationGoal& at, const ArmParameters& /*arm*/, const PlanarPose& pose) {
+    return distance_of(at, at.x_m ? pose.x_m - *at.x_m : 0, at.z_m ? pose.z_m - *at.z_m : 0,
+                       at.arm_rad ? angle_between(pose.arm_rad, *at.arm_rad) : 0, at.tolerance_rad);
+}
+
+GoalDistance distance(const EndEffectorGoal& at, const ArmParameters& arm, const PlanarPose& pose) {
+    const Planar tip = tip_of(arm, pose);
+    const double angle = at.direction_rad ? angle_between(pose.pitch_rad + pose.arm_rad, *at.direction_rad) : 0;
+    return distance_of(at, tip.x - at.x_m, tip.z - at.z_m, angle, at.direction_tolerance_rad);
+}
+
+/// A contact is reached at its places, which are its alternatives.
+GoalDistance distance(const ContactGoal& /*at*/, const ArmParameters& /*arm*/, const PlanarPose& /*pose*/) {
+    return {HUGE_VAL, HUGE_VAL};
+}
+
 GoalDistance single(const Goal& goal, const ArmParameters& arm, const PlanarPose& pose) {
-    GoalDistance d;
-    if (goal.end_effector) {
-        const EndEffectorGoal& at = *goal.end_effector;
-        const Planar tip = Planar{pose.x_m, pose.z_m} + from_body({arm.joint_x_m, arm.joint_z_m}, pose.pitch_rad) +
-                           arm.length_m * arm_direction(pose.pitch_rad, pose.arm_rad);
-        const double angle = at.direction_rad ? angle_between(pose.pitch_rad + pose.arm_rad, *at.direction_rad) : 0;
-        d = distance_of(at, tip.x - at.x_m, tip.z - at.z_m, angle, at.direction_tolerance_rad);
-    } else {
-        const ConfigurationGoal& at = *goal.configuration;
-        d = distance_of(at, at.x_m ? pose.x_m - *at.x_m : 0, at.z_m ? pose.z_m - *at.z_m : 0,
-                        at.arm_rad ? angle_between(pose.arm_rad, *at.arm_rad) : 0, at.tolerance_rad);
-    }
+    GoalDistance d = std::visit([&](const auto& kind) { return distance(kind, arm, pose); }, goal.kind);
     d.hold_s = goal.hold_s;
     return d;
 }

@@ -16,9 +16,9 @@ namespace downwash::judge {
 
 /// How far a vehicle is from a goal; among alternatives from the one whose tolerances it uses least.
 struct GoalDistance {
-    double distance_m = 0;  ///< over the coordinates that the goal gives
-    double used_share = 0;  ///< greatest share of a tolerance that is used; the goal is met up to 1
-    double hold_s = 0;      ///< of that alternative
+    double distance_m = 0;  ///< Distance over the coordinates that the goal gives.
+    double used_share = 0;  ///< Greatest share of a tolerance that is used; the goal is met up to 1.
+    double hold_s = 0;      ///< How long that alternative is held.
 };
 
 [[nodiscard]] DOWNWASH_EXPORT GoalDistance goal_distance(const Goal& goal, const ArmParameters& arm,

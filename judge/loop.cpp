@@ -5,7 +5,7 @@
 namespace downwash::judge {
 namespace {
 
-/// Of the point that the robot file calls the centre of mass, which goals, sensors and obstacles refer to.
+/// The motion of the point that the robot file calls the centre of mass. Goals, sensors and obstacles refer to it.
 Motion of_file_point(const Vehicle& vehicle, Motion motion) {
     const Planar lever = from_body(vehicle.center_of_mass_m, motion.pitch_rad);
     motion.position_m = motion.position_m - lever;
@@ -13,7 +13,7 @@ Motion of_file_point(const Vehicle& vehicle, Motion motion) {
     return motion;
 }
 
-/// The reverse: of the true centre of mass.
+/// The motion of the true centre of mass, from that of the point of the robot file.
 Motion of_true_point(const Vehicle& vehicle, Motion motion) {
     const Planar lever = from_body(vehicle.center_of_mass_m, motion.pitch_rad);
     motion.position_m = motion.position_m + lever;
@@ -23,10 +23,10 @@ Motion of_true_point(const Vehicle& vehicle, Motion motion) {
 
 }  // namespace
 
-Loop::Loop(const ControlLaw& law, const Surroundings& believed, const Plant& plant, const World& world,
+Loop::Loop(const ControlLaw& law, const Surroundings& nominal, const Plant& plant, const World& world,
            const Robot& robot, const PlantState& state, const ControlMemory& memory)
     : law_(law),
-      believed_(believed),
+      nominal_surroundings_(nominal),
       plant_(&plant),
       world_(world),
       sensors_(world, robot, of_file_point(plant.vehicle(), state.motion)),
@@ -47,7 +47,7 @@ void Loop::next(std::int64_t tick, const ReferencePoint& reference, bool is_at_s
     const Motion now = motion();
     before_ = state_;
     const ControlMemory memory_before = memory_;
-    command_ = law_.command(sensors_.seen(now, tape), state_.thrust_n, reference, believed_, memory_);
+    command_ = law_.command(sensors_.seen(now, tape), state_.thrust_n, reference, nominal_surroundings_, memory_);
     wind_ = gusts_.wind();
     state_ = plant_->after(state_, command_, wind_, law_.tick_s());
     if (state_.contact_n > 0 || is_at_surface) {

@@ -11,13 +11,13 @@ namespace downwash::judge {
 /// A vehicle in closed loop, tick by tick.
 class Loop {
  public:
-    /// @param believed surfaces as the controller's map has them
-    Loop(const ControlLaw& law, const Surroundings& believed, const Plant& plant, const World& world,
-         const Robot& robot, const PlantState& state, const ControlMemory& memory);
+    /// @param nominal surfaces as the controller's map has them
+    Loop(const ControlLaw& law, const Surroundings& nominal, const Plant& plant, const World& world, const Robot& robot,
+         const PlantState& state, const ControlMemory& memory);
 
     [[nodiscard]] const PlantState& state() const noexcept { return state_; }
     [[nodiscard]] const ControlMemory& memory() const noexcept { return memory_; }
-    /// Of the point of the robot file.
+    /// The motion of the point of the robot file.
     [[nodiscard]] Motion motion() const;
 
     /// What the controller sees in a tick that begins now. @param tick from the start of the flight
@@ -36,7 +36,7 @@ class Loop {
 
  private:
     const ControlLaw& law_;
-    const Surroundings& believed_;
+    const Surroundings& nominal_surroundings_;
     const Plant* plant_;
     const World& world_;
     Sensors sensors_;

@@ -26,9 +26,9 @@ double growth_of(double x) {
 /// The two bodies of a moving vehicle.
 struct Bodies {
     Planar joint, arm;                            ///< from the multirotor to the joint, from there to the arm's centre
-    double arm_rate_rad_s;                        ///< against the world
+    double arm_rate_rad_s;                        ///< Rate against the world.
     Planar joint_per_pitch, arm_per_pitch;        ///< how the levers change with the pitch
-    Planar arm_velocity_m_s;                      ///< of the arm's centre of mass
+    Planar arm_velocity_m_s;                      ///< Velocity of the arm's centre of mass.
     Planar velocity_per_pitch, velocity_per_arm;  ///< how that changes with the angles at the same rates
 
     Bodies(const Vehicle& v, const Motion& m)
@@ -63,11 +63,11 @@ Four free_momentum_rate(const Vehicle& v, const Motion& m) {
             dot(arm, b.velocity_per_arm) - v.arm_mass_kg * g * b.arm_per_pitch.z};
 }
 
-Observer::Observer(const Vehicle& believed, double gain_1_s, double tick_s)
-    : believed_(believed), tick_s_(tick_s), share_(1 - 1 / growth_of(gain_1_s * tick_s)) {}
+Observer::Observer(const Vehicle& nominal, double gain_1_s, double tick_s)
+    : nominal_vehicle_(nominal), tick_s_(tick_s), share_(1 - 1 / growth_of(gain_1_s * tick_s)) {}
 
 ObserverMemory Observer::at_start(const Motion& motion) const {
-    return {{}, momentum_of(believed_, motion)};
+    return {{}, momentum_of(nominal_vehicle_, motion)};
 }
 
 ObserverMemory Observer::of_kept(const Four& kept) const {
@@ -79,7 +79,7 @@ ObserverMemory Observer::of_kept(const Four& kept) const {
 }
 
 void Observer::look(const Motion& seen, ObserverMemory& memory) const {
-    const Four momentum = momentum_of(believed_, seen);
+    const Four momentum = momentum_of(nominal_vehicle_, seen);
     for (std::size_t i = 0; i < 4; ++i) {
         memory.estimate[i] += share_ * (momentum[i] - memory.expected_momentum[i]) / tick_s_;
     }
@@ -90,18 +90,18 @@ void Observer::expect(const Motion& seen, double thrust_n, double pitch_torque_n
     Motion middle = seen;
     middle.pitch_rad += 0.5 * tick_s_ * seen.pitch_rate_rad_s;
     middle.arm_rad += 0.5 * tick_s_ * seen.arm_rate_rad_s;
-    const Four rate = free_momentum_rate(believed_, middle);
+    const Four rate = free_momentum_rate(nominal_vehicle_, middle);
     const Planar push = from_body({0, thrust_n}, middle.pitch_rad);
     const Four force{push.x, push.z, pitch_torque_nm, joint_torque_nm};
-    memory.expected_momentum = momentum_of(believed_, seen);
+    memory.expected_momentum = momentum_of(nominal_vehicle_, seen);
     for (std::size_t i = 0; i < 4; ++i) {
         memory.expected_momentum[i] += tick_s_ * (rate[i] + force[i] + memory.estimate[i]);
     }
 }
 
 ObserverMemory Observer::held(ObserverMemory memory, const Motion& from, const Motion& to) const {
-    const Four start = momentum_of(believed_, from);
-    const Four end = momentum_of(believed_, to);
+    const Four start = momentum_of(nominal_vehicle_, from);
+    const Four end = momentum_of(nominal_vehicle_, to);
     for (std::size_t i = 0; i < 4; ++i) {
         memory.expected_momentum[i] += end[i] - start[i];
     }

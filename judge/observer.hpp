@@ -8,7 +8,7 @@
 
 namespace downwash::judge {
 
-/// Of x, z, pitch and arm.
+/// Numbers for x, z, pitch and arm.
 using Four = std::array<double, 4>;
 
 /// What an observer keeps between ticks.
@@ -23,28 +23,29 @@ struct ObserverMemory {
 /// How these change where nothing acts but weight.
 [[nodiscard]] DOWNWASH_EXPORT Four free_momentum_rate(const Vehicle& vehicle, const Motion& motion);
 
-/// An observer of a vehicle as it is believed.
+/// An observer that expects the nominal vehicle.
 class Observer {
  public:
     /// @param gain_1_s see DisturbanceObserver; 0: there is none, and estimates are zero
-    Observer(const Vehicle& believed, double gain_1_s, double tick_s);
+    Observer(const Vehicle& nominal, double gain_1_s, double tick_s);
 
-    /// At the start of a flight, with nothing estimated.
+    /// The memory at the start of a flight, with nothing estimated.
     [[nodiscard]] ObserverMemory at_start(const Motion& motion) const;
-    /// In the middle of a flight. @param kept of each coordinate: the estimate less share / tick times the momentum
+    /// The memory in the middle of a flight. @param kept for each coordinate: the estimate less share / tick times the
+    /// momentum
     [[nodiscard]] ObserverMemory of_kept(const Four& kept) const;
     /// Compares the momentum with what was expected.
     void look(const Motion& seen, ObserverMemory& memory) const;
     /// Says what to expect a tick later.
-    /// @param thrust_n,pitch_torque_nm that are believed to act in mid-tick
+    /// @param thrust_n,pitch_torque_nm expected to act in mid-tick
     void expect(const Motion& seen, double thrust_n, double pitch_torque_nm, double joint_torque_nm,
                 ObserverMemory& memory) const;
     /// The memory with which the next look finds what the last one found, whatever pushed in between.
-    /// @param memory of before the last look   @param from,to motion at both ends of the tick
+    /// @param memory before the last look   @param from,to motion at both ends of the tick
     [[nodiscard]] ObserverMemory held(ObserverMemory memory, const Motion& from, const Motion& to) const;
 
  private:
-    Vehicle believed_;
+    Vehicle nominal_vehicle_;
     double tick_s_;
     double share_;
 };

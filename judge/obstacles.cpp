@@ -20,7 +20,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double gjk_tolerance = 1e-12;
 /// A distance that is proven up to this is not asked for again [m].
-constexpr double believed_m = 1e-6;
+constexpr double trusted_m = 1e-6;
 /// A rotor disc is a cylinder so thin [m].
 constexpr double disc_thickness_m = 1e-5;
 
@@ -149,18 +149,18 @@ Answer answer_of(fcl::GJKSolverType solver, const fcl::CollisionGeometryd& a, co
 }
 
 /// The distance of two solids [m], 0 on contact. Between some of them, a slab and a thin plate for instance, libccd
-/// ends far from the minimum; FCL's other solver does so between others. A distance is believed at once if the gap
+/// ends far from the minimum; FCL's other solver does so between others. A distance is trusted at once if the gap
 /// between both solids is as wide along some direction, which proves it from below. Otherwise the lesser of both
 /// counts.
 double distance_between(const fcl::CollisionGeometryd& a, const Pose& at_a, const fcl::CollisionGeometryd& b,
                         const Pose& at_b) {
     const Answer first = answer_of(fcl::GST_LIBCCD, a, at_a, b, at_b);
-    if (first.distance_m - first.proven_m <= believed_m || b.getObjectType() == fcl::OT_BVH) {
+    if (first.distance_m - first.proven_m <= trusted_m || b.getObjectType() == fcl::OT_BVH) {
         return first.distance_m;
     }
     const Answer second = answer_of(fcl::GST_INDEP, a, at_a, b, at_b);
-    return second.distance_m - second.proven_m <= believed_m ? second.distance_m
-                                                             : std::min(first.distance_m, second.distance_m);
+    return second.distance_m - second.proven_m <= trusted_m ? second.distance_m
+                                                            : std::min(first.distance_m, second.distance_m);
 }
 
 /// The nearest of many solids so far.
@@ -183,7 +183,7 @@ struct Obstacles::Solids {
     RobotShape robot;
     std::vector<Part> few;                                     ///< primitives and meshes, in the world
     std::vector<std::unique_ptr<fcl::CollisionObjectd>> many;  ///< cubes of octrees
-    fcl::DynamicAABBTreeCollisionManagerd tree;                ///< of them
+    fcl::DynamicAABBTreeCollisionManagerd tree;                ///< A tree of the cubes.
     std::vector<Part> bodies;                                  ///< in the body frame
     Geometry arm, disc;
 

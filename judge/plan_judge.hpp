@@ -58,7 +58,7 @@ struct JudgedFlight {
 /// How to fly.
 struct FlightConditions {
     bool aero = true;            ///< false: surfaces have no effect on the rotors
-    std::optional<World> world;  ///< empty: everything is as believed. In a world the vehicle has hovered at its start
+    std::optional<World> world;  ///< Empty: everything is nominal. In a world the vehicle has hovered at its start
 };
 
 /// Flies plans of a problem and says how they end. It shares parameters, shapes and the formulas of surface effects

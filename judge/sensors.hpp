@@ -12,13 +12,13 @@ namespace downwash::judge {
 /// The standard normal numbers of one control tick: noise of position x, z, velocity x, z and gyro; three of gusts.
 using Tape = std::array<double, simulation::noise_count>;
 
-/// Those of a tick; zeros in a world without noise and gusts.
+/// The numbers of a tick; zeros in a world without noise and gusts.
 [[nodiscard]] Tape tape_at(const World& world, std::int64_t tick);
 
 /// Whether a world has noise or gusts.
 [[nodiscard]] bool has_noise(const World& world) noexcept;
 
-/// The same world in calm air and with sensors without noise.
+/// A world in calm air and with sensors without noise.
 [[nodiscard]] World without_noise(World world) noexcept;
 
 /// Sensors with a delay, a bias and noise.
@@ -58,7 +58,7 @@ class Gusts {
     double x_decay_ = 0, x_noise_ = 0;
     double z_decay_ = 0, z_coupling_ = 0;
     std::array<double, 3> z_noise_{};  ///< lower triangle 11, 21, 22
-    double x_ = 0;                     ///< of unit variance
+    double x_ = 0;                     ///< Filters of unit variance.
     double z_first_ = 0, z_second_ = 0;
 };
 

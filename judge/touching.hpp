@@ -71,12 +71,12 @@ class TouchCourse {
     const Touch& touch_;
     ReferencePoint from_;
     double tick_s_;
-    double metres_per_newton_;  ///< of the reference in a tick
+    double metres_per_newton_;  ///< How far the reference moves in a tick.
     double settling_s_;
     Stage stage_ = Stage::coming;
     std::int64_t since_ = 0;  ///< ticks in this stage
     std::int64_t free_ = 0;   ///< ticks without contact
-    double beyond_m_ = 0;     ///< of the reference, from the hover towards the surface
+    double beyond_m_ = 0;     ///< Place of the reference, from the hover towards the surface.
     std::vector<double> held_n_;
 };
 

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "downwash/base/parallel.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::judge {
 namespace {

@@ -18,7 +18,7 @@ namespace downwash::judge {
 /// Which worlds to fly in, and how.
 struct WorldRunOptions {
     std::uint64_t runs = 1000;  ///< worlds 1 to this number, > 0
-    std::uint64_t seed = 1;     ///< of the worlds
+    std::uint64_t seed = 1;     ///< Seed of the worlds.
     int threads = 1;
     double fan_step_s = 0;  ///< > 0: WorldRuns has a fan with steps of this length; it keeps four bytes for each
     std::stop_token stop;
@@ -49,7 +49,7 @@ struct WorldRuns {
     double clearance_p01_m = 0, clearance_p10_m = 0, clearance_p50_m = 0;
     /// p50, p90, p99
     std::array<double, 3> tracking_error_m{}, energy_j{};
-    std::vector<Sensitivity> sensitivity;  ///< of every parameter that worlds draw
+    std::vector<Sensitivity> sensitivity;  ///< One for every parameter that worlds draw.
     std::vector<WorldRun> worst;           ///< failed flights first, then by clearance; ten at most
     std::optional<ClearanceFan> fan;       ///< if it was asked for
 };

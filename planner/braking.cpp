@@ -52,7 +52,7 @@ bool is_inside(const Bounds& bounds, const Configuration& at) {
 /// A hover there: it may be a little beside it, but has to come to rest.
 Goal hover_at(const Configuration& rest) {
     Goal goal;
-    goal.configuration = ConfigurationGoal{rest[plane::x], rest[plane::z], rest[plane::arm], 0.3, 0.35};
+    goal.kind = ConfigurationGoal{rest[plane::x], rest[plane::z], rest[plane::arm], 0.3, 0.35};
     goal.hold_s = stop_hold_s;
     return goal;
 }

@@ -8,60 +8,25 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash {
 namespace {
 
-/// Calls `change(goal)` with every end-effector or configuration goal, stops, targets and alternatives included. The
-/// place to return to stays.
+/// Calls `change(goal)` with the goal, every stop and every target. The place to return to stays.
 template <class Change>
 void change_goals(Problem& problem, const Change& change) {
-    const auto change_one = [&](Goal& goal) {
-        if (goal.end_effector) {
-            change(*goal.end_effector);
-        }
-        if (goal.configuration) {
-            change(*goal.configuration);
-        }
-    };
-    const auto change_all = [&](Goal& goal) {
-        change_one(goal);
-        std::ranges::for_each(goal.any_of, change_one);
-    };
-    std::ranges::for_each(problem.stops, change_all);
-    std::ranges::for_each(problem.targets, change_all);
-    change_all(problem.goal);
+    std::ranges::for_each(problem.stops, change);
+    std::ranges::for_each(problem.targets, change);
+    change(problem.goal);
 }
 
-/// To the millimetre, as the error that may come of it prints it.
-double raised(double from_m, double by_m) {
-    return std::round(1e3 * (from_m + by_m)) / 1e3;
-}
-
-void raise(EndEffectorGoal& goal, double z_m) {
-    goal.z_m = raised(goal.z_m, z_m);
-}
-
-void raise(ConfigurationGoal& goal, double z_m) {
-    if (goal.z_m) {
-        goal.z_m = raised(*goal.z_m, z_m);
-    }
-}
-
-void raise_goals(Problem& problem, double z_m) {
-    change_goals(problem, [z_m](auto& goal) { raise(goal, z_m); });
+void raise_goals(Problem& problem, double by_m) {
+    change_goals(problem, [by_m](Goal& goal) { raise_goal(goal, by_m); });
 }
 
 void widen_tolerances(Problem& problem) {
-    constexpr double factor = 1.5;
-    change_goals(problem, [](auto& goal) {
-        goal.tolerance_m *= factor;
-        for (std::optional<double>* tolerance : {&goal.tolerance_x_m, &goal.tolerance_z_m}) {
-            if (*tolerance) {
-                **tolerance *= factor;
-            }
-        }
-    });
+    change_goals(problem, [](Goal& goal) { widen_goal(goal, 1.5); });
 }
 
 /// Time scaled by 2: the same ways at half the speed.
@@ -120,28 +85,21 @@ void stiffen_law(Problem& problem) {
     std::visit([](auto& law) { stiffen(law); }, problem.robot.controller.law);
 }
 
-/// All spreads half as wide, around what is believed.
+/// All spreads half as wide, around the nominal number.
 void know_better(Problem& problem) {
-    Uncertainty& uncertainty = *problem.uncertainty;
-    std::vector<Spread Uncertainty::*> done;
-    for (const WorldParameter& parameter : world_parameters()) {
-        if (std::ranges::find(done, parameter.spread) != done.end()) {
-            continue;  // of several numbers
+    for (const UncertaintyKey& key : uncertainty_keys()) {
+        if (key.spread == nullptr) {
+            continue;
         }
-        done.push_back(parameter.spread);
-        Spread& spread = uncertainty.*parameter.spread;
+        Spread& spread = (*problem.uncertainty).*key.spread;
         double middle = 0;
         if (spread.form == Spread::Form::factor) {
             middle = 1;
-        } else if (spread.form == Spread::Form::range && parameter.believed != nullptr) {
-            middle = parameter.believed(problem.robot);
+        } else if (spread.form == Spread::Form::range && key.nominal != nullptr) {
+            middle = key.nominal(problem.robot);
         }
         spread.low = 0.5 * (middle + spread.low);
         spread.high = 0.5 * (middle + spread.high);
-    }
-    for (Spread* noise : {&uncertainty.position_noise_m, &uncertainty.velocity_noise_m_s, &uncertainty.gyro_noise_rad_s,
-                          &uncertainty.gust_m_s}) {
-        noise->high *= 0.5;
     }
 }
 

@@ -10,43 +10,21 @@
 #include "downwash/planner/certificate_record.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/noise.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::planning {
 namespace {
 
-/// Worlds in which the dangers come early: strong suction under a low scene with slow rotors; the reverse; wind
-/// and bias from either side; then points spread evenly.
+/// Worlds in which dangers come early (DangerQuantiles); then points spread evenly.
+/// @param number of the world, from 1
 std::vector<double> search_quantiles(std::uint64_t number) {
+    constexpr double DangerQuantiles::*dangers[] = {&DangerQuantiles::strong, &DangerQuantiles::weak,
+                                                    &DangerQuantiles::forward, &DangerQuantiles::backward};
     const std::span<const WorldParameter> parameters = world_parameters();
-    std::vector<double> quantiles(parameters.size(), 0.5);
-    const auto set = [&](std::string_view name, double quantile) {
-        for (std::size_t i = 0; i < parameters.size(); ++i) {
-            if (parameters[i].name.starts_with(name)) {
-                quantiles[i] = quantile;
-            }
-        }
-    };
-    constexpr double far = 0.98;
-    if (number <= 2) {
-        const bool is_strong = number == 1;
-        set("aero.ceiling_scale", is_strong ? far : 1 - far);
-        set("aero.ground_scale", is_strong ? far : 1 - far);
-        set("aero.scene_offset_m.z", is_strong ? 1 - far : far);
-        set("vehicle.rotor_time_constant_s", is_strong ? far : 0.5);
-        set("vehicle.delay_s", is_strong ? far : 0.5);
-        set("sensing.position_bias_m z", is_strong ? 0.1 : 0.9);
-        set("wind.steady_m_s.z", is_strong ? 0.9 : 0.1);
-        return quantiles;
-    }
-    if (number <= 4) {
-        const double side = number == 3 ? far : 1 - far;
-        set("aero.ceiling_scale", 0.85);
-        set("aero.scene_offset_m.x", side);
-        set("aero.scene_offset_m.z", 0.2);
-        set("vehicle.com_offset_m.x", side);
-        set("sensing.position_bias_m x", side);
-        set("sensing.pitch_bias_deg", side);
-        set("wind.steady_m_s.x", side);
+    std::vector<double> quantiles(parameters.size());
+    if (number <= std::size(dangers)) {
+        std::ranges::transform(parameters, quantiles.begin(),
+                               [&](const WorldParameter& parameter) { return parameter.danger.*dangers[number - 1]; });
         return quantiles;
     }
     // Kronecker's sequence with the generalised golden ratio (Roberts 2018).

@@ -1,168 +1,48 @@
 #include "downwash/problems/goal_parameters.hpp"
 
+#include <algorithm>
 #include <string>
+#include <variant>
 
 #include "downwash/base/parameter_factories.hpp"
-#include "downwash/problems/obstacle_parameters.hpp"
+#include "downwash/problems/goal_kinds.hpp"
 
 namespace downwash {
 namespace {
 
 using Rows = std::vector<Parameter<Problem>>;
 
-template <class Member>
-Parameter<Problem> position(const std::string& path, std::string_view description, Member member) {
-    return parameters::number<Problem>(path, description, member).at_least(-farthest_m).at_most(farthest_m);
-}
-template <class Member>
-Parameter<Problem> angle(const std::string& path, std::string_view description, Member member) {
-    return parameters::number<Problem>(path, description, member).at_least(-3600).at_most(3600);
-}
-template <class Member>
-Parameter<Problem> tolerance(const std::string& path, std::string_view description, double most, Member member) {
-    return parameters::number<Problem>(path, description, member).above(0).at_most(most);
+bool has_targets(const Problem& p, std::size_t /*index*/) {
+    return !p.targets.empty();
 }
 
-/// @param kind names the EndEffectorGoal or ConfigurationGoal
-template <class Kind>
-void add_point_tolerances(Rows& rows, const std::string& path, Kind kind) {
-    rows.push_back(tolerance(
-        path + ".tolerance_m", "distance that is near enough",
-        100, [kind](auto& p, std::size_t i) -> auto& { return kind(p, i).tolerance_m; }));
-    rows.push_back(tolerance(
-        path + ".tolerance_x_m",
-        "where one of the two is given, x and z are judged one by one: of x; null: tolerance_m",
-        100, [kind](auto& p, std::size_t i) -> auto& { return kind(p, i).tolerance_x_m; }));
-    rows.push_back(tolerance(
-        path + ".tolerance_z_m", "of z; null: tolerance_m",
-        100, [kind](auto& p, std::size_t i) -> auto& { return kind(p, i).tolerance_z_m; }));
-}
-
-/// @param goal names the Goal
+/// Adds rows of goals.
+/// @param goal names the Goal that has them
 template <class GoalMember>
-void add_end_effector(Rows& rows, const std::string& path, GoalMember goal) {
-    rows.push_back(
-        parameters::optional_group<Problem>(
-            path,
-            "the end effector at a point", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).end_effector; })
-            .is_exclusive());
-    const auto tip = [goal](auto& p, std::size_t i) -> auto& {
-        return *goal(p, i).end_effector;
-    };
-    rows.push_back(
-        position(
-            path + ".x_m", "along the plane", [tip](auto& p, std::size_t i) -> auto& { return tip(p, i).x_m; })
-            .is_required());
-    rows.push_back(position(
-                       path + ".z_m", "upwards", [tip](auto& p, std::size_t i) -> auto& { return tip(p, i).z_m; })
-                       .is_required());
-    add_point_tolerances(rows, path, tip);
-    rows.push_back(angle(
-        path + ".direction_deg",
-        "direction of the arm in the plane, down is 90; null for any", [tip](auto& p, std::size_t i) -> auto& {
-            return tip(p, i).direction_rad;
-        }));
-    rows.push_back(tolerance(
-        path + ".direction_tolerance_deg", "deviation that is near enough",
-        180, [tip](auto& p, std::size_t i) -> auto& { return tip(p, i).direction_tolerance_rad; }));
+void add(Rows& rows, const std::vector<Parameter<Goal>>& more, const std::string& path, GoalMember goal) {
+    for (const Parameter<Goal>& row : more) {
+        rows.push_back(parameters::nested<Problem>(row, path + ".", goal));
+    }
 }
 
-/// The keys of a ConfigurationGoal.
-/// @param pose names it
-template <class PoseMember>
-void add_pose(Rows& rows, const std::string& path, PoseMember pose) {
-    rows.push_back(position(
-        path + ".x_m",
-        "along the plane; null for any", [pose](auto& p, std::size_t i) -> auto& { return pose(p, i).x_m; }));
-    rows.push_back(position(
-        path + ".z_m", "upwards; null for any", [pose](auto& p, std::size_t i) -> auto& { return pose(p, i).z_m; }));
-    rows.push_back(angle(
-        path + ".arm_deg",
-        "arm from the vehicle's nose, modulo a turn; null for any", [pose](auto& p, std::size_t i) -> auto& {
-            return pose(p, i).arm_rad;
-        }));
-    add_point_tolerances(rows, path, pose);
-    rows.push_back(tolerance(
-        path + ".tolerance_deg", "deviation of the arm that is near enough",
-        180, [pose](auto& p, std::size_t i) -> auto& { return pose(p, i).tolerance_rad; }));
-}
-
-/// @param goal names the Goal
-template <class GoalMember>
-void add_configuration(Rows& rows, const std::string& path, GoalMember goal) {
-    rows.push_back(
-        parameters::optional_group<Problem>(
-            path,
-            "the vehicle and its arm", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).configuration; })
-            .is_exclusive());
-    add_pose(
-        rows, path, [goal](auto& p, std::size_t i) -> auto& { return *goal(p, i).configuration; });
-}
-
-/// Every kind of goal, of which exactly one is given.
-/// @param goal names the Goal
+/// Every kind of goal, of which exactly one is given, for a goal that is one of several.
 template <class GoalMember>
 void add_kinds(Rows& rows, const std::string& path, GoalMember goal) {
-    add_end_effector(rows, path + ".end_effector", goal);
-    add_configuration(rows, path + ".configuration", goal);
+    add(rows, goal_kind_rows(false), path, goal);
 }
 
-/// A goal that asks for contact; only where it is the only one.
-void add_contact(Rows& rows) {
-    rows.push_back(parameters::optional_group<Problem>(
-                       "goal.contact", "a surface to touch and press on for hold_s, from where the robot fits best",
-                       [](auto& p, std::size_t) -> auto& { return p.goal.contact; })
-                       .is_exclusive());
-    const auto contact = [](auto& p, std::size_t) -> auto& {
-        return *p.goal.contact;
-    };
-    const auto length = [&](std::string_view name, std::string_view description, auto member) {
-        return parameters::number<Problem>("goal.contact." + std::string(name), description, member);
-    };
-    rows.push_back(
-        parameters::text<Problem>(
-            "goal.contact.obstacle",
-            "name of the obstacle", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).obstacle; })
-            .is_required());
-    rows.push_back(
-        length(
-            "force_n",
-            "normal force that is held", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).force_n; })
-            .above(0)
-            .at_most(1000)
-            .is_required());
-    rows.push_back(parameters::choice<Problem, TouchingPart>(
-        "goal.contact.part",
-        "what touches: the top of the multirotor, from below, or the end of the arm, along the arm",
-        {{TouchingPart::frame, "frame"}, {TouchingPart::end_effector, "end_effector"}},
-        [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).part; }));
-    rows.push_back(position(
-        "goal.contact.x_m",
-        "where on an underside or a top; null: anywhere", [contact](auto& p, std::size_t i) -> auto& {
-            return contact(p, i).x_m;
-        }));
-    rows.push_back(position(
-        "goal.contact.z_m",
-        "where on a side; null: anywhere", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).z_m; }));
-    rows.push_back(tolerance(
-        "goal.contact.tolerance_m", "of the place from which it touches",
-        100, [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).tolerance_m; }));
-    rows.push_back(length(
-                       "force_tolerance_n", "what the mean force of a second may be off by; null: a fifth of force_n",
-                       [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).force_tolerance_n; })
-                       .above(0)
-                       .at_most(1000));
-    rows.push_back(length(
-                       "standoff_m", "distance from the surface before and after",
-                       [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).standoff_m; })
-                       .above(0)
-                       .at_most(10));
-    rows.push_back(
-        length(
-            "speed_m_s",
-            "of approach and leaving", [contact](auto& p, std::size_t i) -> auto& { return contact(p, i).speed_m_s; })
-            .above(0)
-            .at_most(1));
+/// Every kind of goal for the only goal, which is there unless targets replace it.
+template <class GoalMember>
+void add_kinds_of_only(Rows& rows, const std::string& path, GoalMember goal) {
+    const auto first = static_cast<std::ptrdiff_t>(rows.size());
+    add(rows, goal_kind_rows(true), path, goal);
+    std::for_each(rows.begin() + first, rows.end(), [](Parameter<Problem>& row) {
+        if (row.count) {
+            row.count = [count = row.count](const Problem& p, std::size_t i) {
+                return has_targets(p, i) ? 0 : count(p, i);
+            };
+        }
+    });
 }
 
 template <class GoalMember>
@@ -200,7 +80,7 @@ void add_choice(Rows& rows, const std::string& path, GoalMember goal) {
             "goals of which any will do", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).any_of; })
             .is_exclusive();
     any_of.count = [goal](const Problem& p, std::size_t i) {
-        return goal(p, i).contact ? 0 : goal(p, i).any_of.size();
+        return asks_for_contact(goal(p, i)) ? 0 : goal(p, i).any_of.size();
     };
     rows.push_back(std::move(any_of));
     const auto alternative = [goal](auto& p, std::size_t i) -> auto& {
@@ -208,10 +88,6 @@ void add_choice(Rows& rows, const std::string& path, GoalMember goal) {
     };
     add_kinds(rows, path + ".any_of[]", alternative);
     rows.push_back(hold(path + ".any_of[]", alternative));
-}
-
-bool has_targets(const Problem& p, std::size_t /*index*/) {
-    return !p.targets.empty();
 }
 
 void add_any_order(Rows& rows) {
@@ -230,20 +106,23 @@ void add_any_order(Rows& rows) {
         hold("goal.in_any_order[]", target).only("without any_of", [target](const Problem& p, std::size_t i) {
             return target(p, i).any_of.empty();
         }));
+    const auto return_to = [](auto& p, std::size_t) -> auto& {
+        return *p.return_to;
+    };
     rows.push_back(parameters::group<Problem>(
                        "goal.return_to", "where the flight must end and stay after the last target",
-                       [](const Problem& p, std::size_t) { return p.return_to.has_value(); },
+                       [](const Problem& p, std::size_t) {
+                           return p.return_to && std::holds_alternative<ConfigurationGoal>(p.return_to->kind);
+                       },
                        [](Problem& p, std::size_t, bool is_there) {
                            p.return_to.reset();
                            if (is_there) {
-                               p.return_to.emplace().configuration.emplace();
+                               p.return_to.emplace();
                            }
                        })
                        .only(with_targets, has_targets));
-    add_pose(
-        rows, "goal.return_to", [](auto& p, std::size_t) -> auto& { return *p.return_to->configuration; });
-    rows.push_back(hold(
-        "goal.return_to", [](auto& p, std::size_t) -> auto& { return *p.return_to; }));
+    add(rows, configuration_rows(), "goal.return_to", return_to);
+    rows.push_back(hold("goal.return_to", return_to));
     rows.push_back(parameters::number<Problem>(
                        "goal.energy_budget_j",
                        "energy that no flight may exceed: targets for which it is not enough are left out",
@@ -260,12 +139,11 @@ void add_goal_rows(Rows& rows) {
         return p.goal;
     };
     rows.push_back(goal_group());
-    add_kinds(rows, "goal", only);
-    add_contact(rows);
+    add_kinds_of_only(rows, "goal", only);
     add_choice(rows, "goal", only);
     add_any_order(rows);
     rows.push_back(hold("goal", only).only("without any_of and in_any_order", [](const Problem& p, std::size_t) {
-        return (p.goal.any_of.empty() || p.goal.contact) && p.targets.empty();
+        return (p.goal.any_of.empty() || asks_for_contact(p.goal)) && p.targets.empty();
     }));
 
     const auto in_turn = [](auto& p, std::size_t i) -> auto& {

@@ -92,9 +92,7 @@ bool arm_can_turn_to(const ArmParameters& arm, double angle_rad, double toleranc
     return std::abs(lane::wrap_angle(angle_rad - middle)) <= half_range + tolerance_rad + rounding_m;
 }
 
-double missing_reach_m(const Problem& problem, const Goal& wanted) {
-    const EndEffectorGoal& goal = *wanted.end_effector;
-    const GoalTolerance tolerance = tolerance_of(wanted);
+double missing_reach_m(const Problem& problem, const EndEffectorGoal& goal, const GoalTolerance& tolerance) {
     const ArmParameters& arm = problem.robot.arm;
     const Bounds& bounds = problem.bounds;
     // The vehicle's place if the arm had no length; a level vehicle carries its joint at a fixed offset.
@@ -119,10 +117,6 @@ Reach reach_of(const ProblemCheck& check, const Goal& wanted) {
     const ArmParameters& arm = problem.robot.arm;
     const CollisionChecker& checker = check.collisions();
     const GoalTolerance tolerance = tolerance_of(wanted);
-    const auto& configuration = wanted.configuration;
-    if (configuration && !(configuration->x_m && configuration->z_m && configuration->arm_rad)) {
-        return Reach::clear;
-    }
     // Where the arm reaches does not depend on the rotors, which may have errors of their own.
     const PlantModel plant = make_plant_model(problem.robot.multirotor, arm, {});
     const std::optional<double> angle_rad = level_arm_rad(wanted);

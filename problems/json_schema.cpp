@@ -81,7 +81,7 @@ class SchemaWriter {
         }
     }
 
-    /// Of a group of keys.
+    /// The schema of a group of keys.
     [[nodiscard]] Json object(const std::string& path) const {
         Json properties = Json::object(), required = Json::array();
         std::vector<Json> alternatives;

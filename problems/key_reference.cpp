@@ -1,6 +1,5 @@
 #include "downwash/problems/key_reference.hpp"
 
-#include <array>
 #include <cstdlib>
 
 #include "downwash/base/angles.hpp"
@@ -12,64 +11,16 @@
 namespace downwash {
 namespace {
 
+/// A model in which every group and list above a key has just begun.
 template <class Model>
-Model with_everything();
-
-template <>
-Robot with_everything<Robot>() {
-    Robot robot;
-    robot.body = {{Box{}, {}}, {Cylinder{}, {}}, {Sphere{}, {}}};
-    robot.uncertainty.emplace();
-    return robot;
-}
-
-/// A problem in which every optional group and every shape stands once, with its defaults.
-template <>
-Problem with_everything<Problem>() {
-    Problem problem;
-    problem.goal.end_effector = EndEffectorGoal{};
-    problem.goal.configuration = ConfigurationGoal{};
-    problem.goal.any_of = {problem.goal};
-    problem.targets = {problem.goal};
-    problem.return_to.emplace().configuration.emplace();
-    problem.goal.contact.emplace();
-    problem.obstacles = {{"", Box{}, {}, {}},
-                         {"", Cylinder{}, {}, {}},
-                         {"", Sphere{}, {}, {}},
-                         {"", Mesh{}, {}, {}},
-                         {"", Octomap{}, {}, {}}};
-    problem.robot = with_everything<Robot>();
-    problem.uncertainty.emplace();
-    return problem;
-}
-
-template <>
-Campaign with_everything<Campaign>() {
-    Campaign campaign;
-    campaign.expect.resize(1);
-    campaign.parameters.resize(1);
-    return campaign;
-}
-
-/// The list element in which a key has a value.
-std::size_t element_of(const std::string& path) {
-    constexpr std::array<std::string_view, 5> shapes{".box.", ".cylinder.", ".sphere.", ".mesh.", ".octomap."};
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-        if (path.find(shapes[i]) != std::string::npos) {
-            return i;
+Model with_groups_above(const ParameterTable<Model>& table, const std::string& path) {
+    Model model;
+    for (std::size_t end = path.find('.'); end != std::string::npos; end = path.find('.', end + 1)) {
+        const std::string_view above = std::string_view(path).substr(0, end);
+        const Parameter<Model>* group = table.find(above.ends_with("[]") ? above.substr(0, end - 2) : above);
+        if (group != nullptr && group->resize) {
+            group->resize(model, 0, 1);
         }
-    }
-    return 0;
-}
-
-/// The model whose values of a key are its defaults: below a choice that is written as a group they are those of one
-/// that has just begun.
-template <class Model>
-Model in_groups(const ParameterTable<Model>& table, const std::string& path) {
-    auto model = with_everything<Model>();
-    const Parameter<Model>* group = table.find(parent_path(path));
-    if (group != nullptr && group->can_be_group) {
-        group->resize(model, 0, 1);
     }
     return model;
 }
@@ -138,7 +89,7 @@ std::vector<KeyReference> referenced(const ParameterTable<Model>& table) {
             key.default_text = parameter.required ? "required" : "one of its group";
         } else if (parameter.get) {
             const std::string& path = parameter.path;
-            key.default_value = in_file_units(path, parameter.get(in_groups(table, path), element_of(path)));
+            key.default_value = in_file_units(path, parameter.get(with_groups_above(table, path), 0));
             key.default_text =
                 (key.info.default_of.empty() ? "" : "that of " + std::string(key.info.default_of) + ", or ") +
                 text_of(*key.default_value);

@@ -21,7 +21,7 @@ struct KeyReference {
     ParameterInfo info;
     /// In the units of the file (degrees); empty for groups and lists, and where a file has to say.
     std::optional<Value> default_value;
-    std::string default_text;  ///< the same for people; "required" or "one of its group" where a file has to say
+    std::string default_text;  ///< For people; "required" or "one of its group" where a file has to say.
 };
 
 /// Every key of a kind of file, in the order in which they are documented, a group before what is in it.

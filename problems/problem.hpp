@@ -73,20 +73,20 @@ using ParameterValues = std::map<std::string, double, std::less<>>;
 /// How to search.
 struct PlannerSettings {
     Variant variant = Variant::mp_arm_ada;
-    std::string algorithm = "rrt-star";  ///< one of the names that algorithms() lists
+    std::string algorithm = "rrt-star";  ///< One of the names that algorithms() lists.
     CostFunction objective = Objective::energy;
     /// Wall time of the search [s], > 0. Empty: default_time_limit_s, or none where max_iterations is set.
     std::optional<double> time_limit_s;
-    std::optional<std::uint64_t> max_iterations;  ///< set it for a run that is repeatable bit for bit
+    std::optional<std::uint64_t> max_iterations;  ///< Set it for a run that is repeatable bit for bit.
     std::uint32_t seed = 1;
-    double safety_margin_m = 0.05;  ///< least clearance while planning, >= 0
-    double max_saturation = 1;      ///< of a rotor or the joint while planning: greatest demand over its limit, >= 1
-    std::optional<double> max_pitch_rate_rad_s;  ///< of the vehicle while planning, > 0; empty: any
+    double safety_margin_m = 0.05;  ///< Least clearance while planning, >= 0.
+    double max_saturation = 1;      ///< Greatest demand over its limit, of a rotor or the joint while planning, >= 1.
+    std::optional<double> max_pitch_rate_rad_s;  ///< Limit of the vehicle while planning, > 0; empty: any.
     // Where the problem has an uncertainty:
-    std::uint64_t worlds = 8;               ///< that every edge has to survive, the nominal one included, >= 1
-    double max_failure_probability = 0.01;  ///< of a plan that is called solved, in (0, 1)
-    double confidence = 0.95;               ///< of that, in (0, 1)
-    ParameterValues parameters;             ///< those that differ from their defaults
+    std::uint64_t worlds = 8;               ///< Worlds that every edge has to survive, the nominal one included, >= 1.
+    double max_failure_probability = 0.01;  ///< Limit for a plan that is called solved, in (0, 1).
+    double confidence = 0.95;               ///< Confidence of that limit, in (0, 1).
+    ParameterValues parameters;             ///< Parameters of the algorithm that differ from their defaults.
 };
 
 /// A motion planning problem for an aerial manipulator, complete in itself.
@@ -98,15 +98,13 @@ struct Problem {
     Bounds bounds;
     std::vector<Obstacle> obstacles;
     AeroSettings aero;
-    std::optional<Uncertainty> uncertainty;  ///< nothing: everything is as believed
+    std::optional<Uncertainty> uncertainty;  ///< Nothing: everything is nominal.
     Start start;
-    std::vector<Goal> stops;  ///< goals to be reached and held before `goal`, in this order, without alternatives
+    std::vector<Goal> stops;  ///< Goals to be reached and held before `goal`, in this order, without alternatives.
     Goal goal;
-    std::vector<Goal>
-        targets;  ///< goals in an order that the planner chooses; if there are any, they replace the above
-    std::optional<Goal> return_to;  ///< configuration to be reached and held after the targets
-    std::optional<double>
-        energy_budget_j;  ///< no flight may take more, > 0; targets that it does not allow are left out
+    std::vector<Goal> targets;      ///< Goals in an order that the planner chooses; any replace `stops` and `goal`.
+    std::optional<Goal> return_to;  ///< A configuration to be reached and held after the targets.
+    std::optional<double> energy_budget_j;  ///< No flight may take more, > 0; targets beyond it are left out.
     MotionLimits motion;
     PlannerSettings planner;
 
@@ -120,8 +118,8 @@ inline constexpr std::size_t max_goals = 64;
 /// More targets than these are not planned for in any order.
 inline constexpr std::size_t max_targets = 20;
 
-/// All goals in the order in which they are to be visited: the stops, then the goal. Of targets in any order, see
-/// in_order(): as they stand in the file, then the place to return to.
+/// All goals in the order in which they are to be visited: the stops, then the goal. Targets in any order come as they
+/// stand in the file, then the place to return to; see in_order().
 [[nodiscard]] DOWNWASH_EXPORT std::vector<Goal> goals_of(const Problem& problem);
 
 /// Every reason why a problem cannot be planned: numbers out of range, a robot that cannot fly, a start in collision

@@ -14,6 +14,7 @@
 #include "downwash/grids/factor_grid.hpp"
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/goal_errors.hpp"
+#include "downwash/problems/goal_kinds.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/problem_model.hpp"
@@ -22,6 +23,7 @@
 #include "downwash/scene/collision_checker.hpp"
 #include "downwash/simulation/flight_model.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash {
 namespace {

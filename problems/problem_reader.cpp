@@ -111,6 +111,10 @@ void set_parameter(Problem& problem, std::string_view key, std::string_view text
     if (parameter == nullptr || !parameter->set || key.find("[]") != std::string_view::npos) {
         throw InputError({{std::string(key), "is no key of a problem with one value"}});
     }
+    const Parameter<Problem>* group = problem_parameters().find(parent_path(key));
+    if (group != nullptr && group->exclusive && group->count(problem, 0) == 0) {
+        throw InputError({{std::string(key), "is no key of this problem as it is: its group is not there"}});
+    }
     problems::YamlNode node;
     node.kind = text == "null" ? problems::YamlNode::Kind::null : problems::YamlNode::Kind::scalar;
     node.text = text;

@@ -18,10 +18,10 @@ inline constexpr std::size_t largest_document = 32UL * 1024 * 1024;
 
 /// Something wrong, or outdated, in a problem or robot file.
 struct LocatedError {
-    std::string file;     ///< as the caller or the problem file names it
-    int line = 1;         ///< counted from 1
-    int column = 1;       ///< in bytes, counted from 1
-    std::string message;  ///< what is wrong, what was expected, and the nearest valid name or another remedy
+    std::string file;     ///< The file as the caller or the problem file names it.
+    int line = 1;         ///< Counted from 1.
+    int column = 1;       ///< In bytes, counted from 1.
+    std::string message;  ///< What is wrong, what was expected, and the nearest valid name or another remedy.
 };
 
 /// "file:line:column: message"
@@ -49,7 +49,7 @@ class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
                                                    const std::function<void(const LocatedError&)>& on_outdated = {},
                                                    const std::function<void(const LocatedError&)>& on_warning = {});
 
-/// The same, with the flight model in the scene that was made for the checks.
+/// Reads a problem like read_problem(), with the flight model in the scene that was made for the checks.
 [[nodiscard]] DOWNWASH_EXPORT PlannableProblem
 read_plannable_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust = {},
                        const std::function<void(const LocatedError&)>& on_outdated = {},

@@ -10,7 +10,7 @@
 #include "downwash/problems/problem.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/loop_margins.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash {
 namespace {
@@ -126,7 +126,7 @@ std::vector<HoldingGain> holding_gains(const CascadedPid& law) {
             {"controller.joint.kd", law.joint_kd}};
 }
 
-/// Of other laws nothing is known.
+/// Nothing is known about the gains of other laws.
 template <class Law>
 std::vector<HoldingGain> holding_gains(const Law& /*law*/) {
     return {};

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <variant>
 
 #include "downwash/base/text.hpp"
 #include "downwash/problems/problem_check.hpp"
@@ -25,14 +26,14 @@ constexpr double hover_before_s = 2;
 
 constexpr double nothing_m = std::numeric_limits<double>::infinity();
 
-/// A way into a surface: along x or z.
-struct Way {
+/// A way to a surface: along x or z.
+struct Approach {
     PlaneVector direction;  ///< unit vector
     double arm_rad;         ///< with which the arm of the level vehicle points there
 };
 constexpr double quarter = std::numbers::pi / 2;
-constexpr Way upward{{0, 1}, -quarter};
-constexpr Way ways[] = {upward, {{1, 0}, 0}, {{-1, 0}, std::numbers::pi}, {{0, -1}, quarter}};
+constexpr Approach upward{{0, 1}, -quarter};
+constexpr Approach ways[] = {upward, {{1, 0}, 0}, {{-1, 0}, std::numbers::pi}, {{0, -1}, quarter}};
 
 /// Why a place is none, from the first test to the last.
 enum class Flaw { unseen, uneven, outside, blocked, unflyable };
@@ -56,7 +57,7 @@ class TouchSearch {
         if (contact_.part == TouchingPart::frame) {
             search(upward);
         } else {
-            for (const Way& way : ways) {
+            for (const Approach& way : ways) {
                 search(way);
             }
         }
@@ -115,7 +116,7 @@ class TouchSearch {
     }
 
     /// How far the obstacle is along a way from a point of the plane [m]: sphere tracing.
-    double distance_along(const Way& way, PlaneVector from) const {
+    double distance_along(const Approach& way, PlaneVector from) const {
         constexpr double dot_m = 1e-7;
         const double longest_m = problem_.bounds.x_high_m - problem_.bounds.x_low_m + problem_.bounds.z_high_m -
                                  problem_.bounds.z_low_m + 10;
@@ -131,7 +132,7 @@ class TouchSearch {
         return nothing_m;
     }
 
-    void search(const Way& way) {
+    void search(const Approach& way) {
         const Bounds& bounds = problem_.bounds;
         const bool is_vertical = way.direction.x == 0;
         const std::optional<double>& wanted = is_vertical ? contact_.x_m : contact_.z_m;
@@ -152,7 +153,7 @@ class TouchSearch {
     }
 
     /// @param across_m coordinate across the way
-    void try_place(const Way& way, double across_m) {
+    void try_place(const Approach& way, double across_m) {
         const Bounds& bounds = problem_.bounds;
         const bool is_vertical = way.direction.x == 0;
         const double sign = is_vertical ? way.direction.z : way.direction.x;
@@ -193,13 +194,13 @@ class TouchSearch {
         const PlaneVector waiting{touch.surface_m.x + contact_.standoff_m * touch.normal.x,
                                   touch.surface_m.z + contact_.standoff_m * touch.normal.z};
         if (frame_points_m_.empty()) {
-            EndEffectorGoal& tip = goal.end_effector.emplace();
+            auto& tip = goal.kind.emplace<EndEffectorGoal>();
             tip.x_m = waiting.x;
             tip.z_m = waiting.z;
             tip.tolerance_m = contact_.tolerance_m;
             tip.direction_rad = way.arm_rad;
         } else {
-            ConfigurationGoal& vehicle = goal.configuration.emplace();
+            auto& vehicle = goal.kind.emplace<ConfigurationGoal>();
             vehicle.x_m = waiting.x;
             vehicle.z_m = waiting.z - frame_points_m_.front().z;
             vehicle.tolerance_m = contact_.tolerance_m;
@@ -210,10 +211,10 @@ class TouchSearch {
     }
 
     /// Whether the level vehicle can wait and touch there.
-    bool is_usable(const Goal& goal, const Way& way) {
+    bool is_usable(const Goal& goal, const Approach& way) {
         const PlantModel plant = make_plant_model(problem_.robot.multirotor, problem_.robot.arm, problem_.robot.rotors);
         Configuration waiting = problem_.start.configuration();
-        if (goal.end_effector) {
+        if (part_of(goal) == GoalPart::end_effector) {
             waiting[plane::arm] = way.arm_rad;
         }
         waiting = placed_at(goal, plant, waiting, 0, 0);
@@ -245,7 +246,7 @@ class TouchSearch {
         return true;
     }
 
-    /// Of the flaws of places that are not, the one that comes last is nearest to a place.
+    /// Keeps the flaw that comes last in the order of the tests, which is that of the best place. @return false
     bool note(Flaw flaw) {
         flaw_ = std::max(flaw_, flaw);
         return false;
@@ -300,11 +301,11 @@ class TouchSearch {
 }  // namespace
 
 TouchPlaces find_touches(const ProblemCheck& check) {
-    return TouchSearch(check, check.problem().goal.contact.value()).places();
+    return TouchSearch(check, std::get<ContactGoal>(check.problem().goal.kind)).places();
 }
 
 Problem with_touches(Problem problem) {
-    if (problem.goal.contact) {
+    if (asks_for_contact(problem.goal)) {
         std::vector<Goal> places = find_touches(ProblemCheck(problem)).places;
         problem.goal.any_of = std::move(places);
     }

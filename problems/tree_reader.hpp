@@ -24,7 +24,7 @@ class TreeReader {
     /// Reads a file, and those that it refers to. Errors are collected, never thrown.
     /// @param group key of the group that the file holds ("robot"); empty for the whole model
     void read(const std::filesystem::path& file, const std::string& group = "") { read_document(file, group, {}); }
-    /// The same from the text of a file of the whole model. @param file names it, and is what its paths are relative to
+    /// Reads the text of a file of the whole model. @param file names it, and is what its paths are relative to
     void read_text(const std::string& text, const std::filesystem::path& file) { read_text(text, file, ""); }
 
     /// From now on leaves out keys that have no meaning beside the others, which are errors otherwise.
@@ -52,13 +52,13 @@ class TreeReader {
     };
     /// A group that is being read.
     struct Group {
-        std::string path;   ///< in the table; "path[]" within a list
-        std::string key;    ///< in the model
-        std::size_t index;  ///< of the list element that it is in
+        std::string path;   ///< Path in the table; "path[]" within a list.
+        std::string key;    ///< Key in the model.
+        std::size_t index;  ///< Index of the list element that it is in.
         Mark mark;
         const YamlNode& node;
-        std::map<std::string, std::size_t, std::less<>> entries;  ///< first entry of every name
-        std::vector<std::string> meant;                           ///< names that misspelt keys stand for
+        std::map<std::string, std::size_t, std::less<>> entries;  ///< First entry of every name.
+        std::vector<std::string> meant;                           ///< Names that misspelt keys stand for.
     };
 
     void read_document(const std::filesystem::path& file, const std::string& path, const Mark& referred_from);
@@ -88,11 +88,11 @@ class TreeReader {
     WrongKeys wrong_;
     struct File {
         std::filesystem::path path;
-        std::string root;  ///< key of the group that the file is
+        std::string root;  ///< Key of the group that the file is.
     };
     std::vector<File> files_;
     bool leaves_out_inapplicable_ = false;
-    std::size_t file_ = 0;  ///< the one that is read now
+    std::size_t file_ = 0;  ///< The file that is read now.
     std::map<std::string, Place, std::less<>> places_;
     struct Found {
         Place place;

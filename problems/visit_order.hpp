@@ -16,7 +16,7 @@ namespace downwash {
 /// A stay at one of the targets of a problem.
 struct Visit {
     std::size_t target = 0;                  ///< in Problem::targets, from 0
-    std::optional<std::size_t> alternative;  ///< of its `any_of`, from 0; empty: any of them, or it has none
+    std::optional<std::size_t> alternative;  ///< In its `any_of`, from 0; empty: any of them, or it has none.
 
     friend bool operator==(const Visit&, const Visit&) = default;
 };
@@ -36,7 +36,7 @@ inline constexpr std::array all_left_out_reasons{LeftOutReason::energy_budget, L
 struct LeftOutTarget {
     std::size_t target = 0;  ///< in Problem::targets, from 0
     LeftOutReason reason = LeftOutReason::no_flight;
-    /// Of `energy_budget`: what the flight would take with this target beside those that are visited, by the legs that
+    /// For `energy_budget`: what the flight would take with this target beside those that are visited, by the legs that
     /// were flown and lower bounds of the others [J].
     std::optional<double> energy_j;
 
@@ -47,9 +47,10 @@ struct LeftOutTarget {
 struct VisitOrder {
     std::vector<Visit> visits;
     std::vector<LeftOutTarget> left_out;  ///< by number
-    bool is_best = false;     ///< no other order is cheaper by the legs that were flown and lower bounds of the others
-    std::uint64_t legs = 0;   ///< flown between two places each to compare orders
-    double cost_of_legs = 0;  ///< of this order, one by one; the flight of the plan costs something else
+    bool is_best = false;    ///< no other order is cheaper by the legs that were flown and lower bounds of the others
+    std::uint64_t legs = 0;  ///< flown between two places each to compare orders
+    double cost_of_legs =
+        0;  ///< Sum over the legs of this order, one by one; the flight of the plan costs something else.
 
     friend bool operator==(const VisitOrder&, const VisitOrder&) = default;
 };

@@ -64,7 +64,7 @@ class TreeBuilder : public YAML::EventHandler {
     struct Open {
         std::shared_ptr<YamlNode> node;
         YAML::anchor_t anchor;
-        YamlNode::Pointer key;  ///< of a map whose value comes next
+        YamlNode::Pointer key;  ///< Key of a map whose value comes next.
     };
 
     void count_event(const YAML::Mark& mark) {

@@ -26,10 +26,10 @@ struct YamlNode {
 
     Kind kind = Kind::null;
     Mark mark;
-    std::string text;                                  ///< of a scalar
+    std::string text;                                  ///< Text of a scalar.
     bool is_quoted = false;                            ///< a scalar in quotes or a block is text, never a number
-    std::vector<Pointer> items;                        ///< of a list
-    std::vector<std::pair<Pointer, Pointer>> entries;  ///< of a map, keys and values, duplicates included
+    std::vector<Pointer> items;                        ///< Items of a list.
+    std::vector<std::pair<Pointer, Pointer>> entries;  ///< Keys and values of a map, duplicates included.
     int depth = 1;                                     ///< levels below and with this one
 };
 

@@ -10,7 +10,7 @@
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/python/columns.hpp"
 #include "downwash/python/core.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::python {
 namespace {

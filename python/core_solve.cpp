@@ -9,7 +9,7 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/python/core_aeromap.hpp"
 #include "downwash/python/core_solution.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::python {
 std::function<void(const Progress&)> telling(Attendance& attendance, const py::object& on_progress) {

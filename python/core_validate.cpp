@@ -9,7 +9,7 @@
 #include "downwash/python/columns.hpp"
 #include "downwash/python/core_solution.hpp"
 #include "downwash/python/interruptible.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::python {
 namespace {

@@ -114,19 +114,17 @@ Json optional_json(const std::optional<double>& value) {
 }
 
 Json goal_json(const Goal& goal) {
-    Json json;
-    if (goal.end_effector) {
-        const EndEffectorGoal& at = *goal.end_effector;
-        json = {{"kind", "end_effector"},
-                {"x_m", at.x_m},
-                {"z_m", at.z_m},
-                {"direction_rad", optional_json(at.direction_rad)}};
-    } else {
-        const ConfigurationGoal& at = *goal.configuration;
-        json = {{"kind", "state"},
-                {"x_m", optional_json(at.x_m)},
-                {"z_m", optional_json(at.z_m)},
-                {"arm_rad", optional_json(at.arm_rad)}};
+    const GoalDrawing drawing = drawing_of(goal);
+    const bool has_tip = part_of(goal) == GoalPart::end_effector;
+    Json json{{"kind", has_tip ? "end_effector" : "state"},
+              {"x_m", optional_json(drawing.x_m)},
+              {"z_m", optional_json(drawing.z_m)},
+              {has_tip ? "direction_rad" : "arm_rad", optional_json(level_arm_rad(goal))}};
+    for (const std::vector<PlaneVector>& line : drawing.outline) {
+        Json& points = json["outline"].emplace_back(Json::array());
+        for (const PlaneVector& point : line) {
+            points.push_back({point.x, point.z});
+        }
     }
     const GoalTolerance tolerance = tolerance_of(goal);
     json["tolerance_x_m"] = tolerance.x_m;

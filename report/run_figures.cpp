@@ -160,10 +160,11 @@ std::vector<FigurePoints> goal_points(const Problem& problem, const std::vector<
     for (const Goal& visited : goals_of(problem)) {
         const std::string& name = names[number++];
         for (const Goal& goal : alternatives(visited)) {
-            if (!goal.end_effector) {
+            const GoalDrawing drawing = drawing_of(goal);
+            if (part_of(goal) != GoalPart::end_effector || !drawing.outline.empty()) {
                 continue;
             }
-            goals.points.push_back({goal.end_effector->x_m, goal.end_effector->z_m});
+            goals.points.push_back({drawing.x_m.value(), drawing.z_m.value()});
             if (names.size() > 1) {
                 goals.labels.push_back(name);
             }
@@ -181,10 +182,19 @@ Pieces goal_regions(const Problem& problem) {
     Pieces regions;
     for (const Goal& visited : goals_of(problem)) {
         for (const Goal& goal : alternatives(visited)) {
-            if (!goal.end_effector) {
+            if (part_of(goal) != GoalPart::end_effector) {
                 continue;
             }
-            const double x_m = goal.end_effector->x_m, z_m = goal.end_effector->z_m;
+            const GoalDrawing drawing = drawing_of(goal);
+            for (const std::vector<PlaneVector>& line : drawing.outline) {
+                for (Ring& ring = regions.emplace_back(); const PlaneVector& point : line) {
+                    ring.push_back({point.x, point.z});
+                }
+            }
+            if (!drawing.outline.empty()) {
+                continue;
+            }
+            const double x_m = drawing.x_m.value(), z_m = drawing.z_m.value();
             const GoalTolerance tolerance = tolerance_of(goal);
             Ring region;
             for (int i = 0; i <= corners && tolerance.is_disc; ++i) {

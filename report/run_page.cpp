@@ -60,7 +60,7 @@ std::string command_of(const Problem& problem, const Json& solution) {
 /// they are.
 Problem with_chosen_place(const RunRecord& run, const FlightModel& model) {
     Problem problem = run.problem;
-    if (problem.goal.contact && run.plan) {
+    if (asks_for_contact(problem.goal) && run.plan) {
         const PlanarPose end = level_at(configuration_of(run.plan->reference.back().point));
         problem.goal = Goal(nearest_goal(problem.goal, model.tick().plant, end));
     }

@@ -50,7 +50,7 @@ double FreeAirCost::min_cost_to_goal(const Configuration& from) const {
     for (const Goal& goal : alternatives(space_.goal())) {
         // What the tolerance leaves open may stay; the tip moves with the vehicle and with the arm.
         const GoalError off = space_.error_beyond_tolerance(goal, from);
-        const bool has_tip = !goal.configuration.has_value();
+        const bool has_tip = part_of(goal) == GoalPart::end_effector;
         const double tip_speed_m_s =
             limits_.max_speed_m_s + (has_tip ? 2 * space_.arm_weight_m() * limits_.max_arm_rate_rad_s : 0);
         const double duration_s =

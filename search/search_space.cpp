@@ -156,7 +156,8 @@ Configuration SearchSpace::moved_to(const Goal& goal, Configuration c, Random& r
     const double dz = random.uniform(-1, 1);
     const double turn = tolerance.usable().angle_rad * random.uniform(-1, 1);
     if (const std::optional<double> angle_rad = level_arm_rad(goal)) {
-        c[plane::arm] = into_arm_range(*angle_rad + (goal.end_effector || is_beside ? turn : 0), c[plane::arm]);
+        c[plane::arm] = into_arm_range(*angle_rad + (part_of(goal) == GoalPart::end_effector || is_beside ? turn : 0),
+                                       c[plane::arm]);
     }
     const double radius = tolerance.is_disc ? std::max(1.0, std::sqrt(dx * dx + dz * dz)) : 1;
     const GoalTolerance beside = tolerance.times(is_beside ? usable_tolerance_share / radius : 0);

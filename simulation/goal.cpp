@@ -13,6 +13,70 @@ double angle_between(double a_rad, double b_rad) {
     return std::abs(lane::wrap_angle(a_rad - b_rad));
 }
 
+template <class Kind>
+GoalTolerance place_and_angle(const Kind& goal, double angle_rad) {
+    return {goal.tolerance_x_m.value_or(goal.tolerance_m), goal.tolerance_z_m.value_or(goal.tolerance_m),
+            !goal.tolerance_x_m && !goal.tolerance_z_m, angle_rad};
+}
+
+template <class Kind>
+void widen_place(Kind& goal, double factor) {
+    goal.tolerance_m *= factor;
+    for (std::optional<double>* tolerance : {&goal.tolerance_x_m, &goal.tolerance_z_m}) {
+        if (*tolerance) {
+            **tolerance *= factor;
+        }
+    }
+}
+
+double raised(double from_m, double by_m) {
+    return std::round(1e3 * (from_m + by_m)) / 1e3;
+}
+
+// A configuration.
+
+GoalTolerance tolerance(const ConfigurationGoal& goal) {
+    return place_and_angle(goal, goal.tolerance_rad);
+}
+
+GoalDeviation deviation(const ConfigurationGoal& goal, const PlantModel& /*model*/, const PlanarPose& pose) {
+    return {goal.x_m ? pose.x_m - *goal.x_m : 0, goal.z_m ? pose.z_m - *goal.z_m : 0,
+            goal.arm_rad ? angle_between(pose.arm_rad, *goal.arm_rad) : 0};
+}
+
+std::optional<double> level_arm(const ConfigurationGoal& goal) {
+    return goal.arm_rad;
+}
+
+Configuration placed(const ConfigurationGoal& goal, const PlantModel& /*model*/, const Configuration& c, double dx_m,
+                     double dz_m) {
+    return {goal.x_m ? *goal.x_m + dx_m : c[plane::x], goal.z_m ? *goal.z_m + dz_m : c[plane::z], c[plane::arm]};
+}
+
+GoalPart part(const ConfigurationGoal& /*goal*/) {
+    return GoalPart::vehicle;
+}
+
+GoalDrawing drawing(const ConfigurationGoal& goal) {
+    return {goal.x_m, goal.z_m, {}};
+}
+
+void lift(ConfigurationGoal& goal, double by_m) {
+    if (goal.z_m) {
+        goal.z_m = raised(*goal.z_m, by_m);
+    }
+}
+
+void widen(ConfigurationGoal& goal, double factor) {
+    widen_place(goal, factor);
+}
+
+// The end effector at a point.
+
+GoalTolerance tolerance(const EndEffectorGoal& goal) {
+    return place_and_angle(goal, goal.direction_tolerance_rad);
+}
+
 GoalDeviation deviation(const EndEffectorGoal& goal, const PlantModel& model, const PlanarPose& pose) {
     const auto attitude = dynamics::attitude(model, pose.pitch_rad, pose.arm_rad);
     const auto tip = dynamics::end_effector_position(model, attitude, pose.x_m, pose.z_m);
@@ -20,16 +84,62 @@ GoalDeviation deviation(const EndEffectorGoal& goal, const PlantModel& model, co
             goal.direction_rad ? angle_between(pose.pitch_rad + pose.arm_rad, *goal.direction_rad) : 0};
 }
 
-GoalDeviation deviation(const ConfigurationGoal& goal, const PlanarPose& pose) {
-    return {goal.x_m ? pose.x_m - *goal.x_m : 0, goal.z_m ? pose.z_m - *goal.z_m : 0,
-            goal.arm_rad ? angle_between(pose.arm_rad, *goal.arm_rad) : 0};
+std::optional<double> level_arm(const EndEffectorGoal& goal) {
+    return goal.direction_rad;
 }
 
-template <class Kind>
-GoalTolerance tolerance(const Kind& goal, double angle_rad) {
-    return {goal.tolerance_x_m.value_or(goal.tolerance_m), goal.tolerance_z_m.value_or(goal.tolerance_m),
-            !goal.tolerance_x_m && !goal.tolerance_z_m, angle_rad};
+Configuration placed(const EndEffectorGoal& goal, const PlantModel& model, const Configuration& c, double dx_m,
+                     double dz_m) {
+    const auto tip = dynamics::end_effector_position(model, dynamics::attitude(model, 0.0, c[plane::arm]), 0.0, 0.0);
+    return {goal.x_m + dx_m - tip.x, goal.z_m + dz_m - tip.z, c[plane::arm]};
 }
+
+GoalPart part(const EndEffectorGoal& /*goal*/) {
+    return GoalPart::end_effector;
+}
+
+GoalDrawing drawing(const EndEffectorGoal& goal) {
+    return {goal.x_m, goal.z_m, {}};
+}
+
+void lift(EndEffectorGoal& goal, double by_m) {
+    goal.z_m = raised(goal.z_m, by_m);
+}
+
+void widen(EndEffectorGoal& goal, double factor) {
+    widen_place(goal, factor);
+}
+
+// A contact: the robot is at one of its places, which are its alternatives, and nowhere as long as they are not found.
+
+GoalTolerance tolerance(const ContactGoal& goal) {
+    return {goal.tolerance_m, goal.tolerance_m, true, 1};
+}
+
+GoalDeviation deviation(const ContactGoal& /*goal*/, const PlantModel& /*model*/, const PlanarPose& /*pose*/) {
+    return {HUGE_VAL, HUGE_VAL, 0};
+}
+
+std::optional<double> level_arm(const ContactGoal& /*goal*/) {
+    return std::nullopt;
+}
+
+Configuration placed(const ContactGoal& /*goal*/, const PlantModel& /*model*/, const Configuration& c, double /*dx_m*/,
+                     double /*dz_m*/) {
+    return c;
+}
+
+GoalPart part(const ContactGoal& goal) {
+    return goal.part == TouchingPart::frame ? GoalPart::vehicle : GoalPart::end_effector;
+}
+
+GoalDrawing drawing(const ContactGoal& /*goal*/) {
+    return {};
+}
+
+void lift(ContactGoal& /*goal*/, double /*by_m*/) {}
+
+void widen(ContactGoal& /*goal*/, double /*factor*/) {}
 
 double distance_m(const GoalDeviation& d) {
     return std::sqrt(d.x_m * d.x_m + d.z_m * d.z_m);
@@ -55,29 +165,41 @@ double GoalTolerance::used_share(const GoalDeviation& d) const noexcept {
 }
 
 GoalTolerance tolerance_of(const Goal& goal) noexcept {
-    if (goal.end_effector) {
-        return tolerance(*goal.end_effector, goal.end_effector->direction_tolerance_rad);
-    }
-    const ConfigurationGoal& configuration = *goal.configuration;
-    return tolerance(configuration, configuration.tolerance_rad);
+    return std::visit([](const auto& kind) { return tolerance(kind); }, goal.kind);
 }
 
 GoalDeviation goal_deviation(const Goal& goal, const PlantModel& model, const PlanarPose& pose) {
-    return goal.end_effector ? deviation(*goal.end_effector, model, pose) : deviation(*goal.configuration, pose);
+    return std::visit([&](const auto& kind) { return deviation(kind, model, pose); }, goal.kind);
 }
 
 std::optional<double> level_arm_rad(const Goal& goal) noexcept {
-    return goal.end_effector ? goal.end_effector->direction_rad : goal.configuration->arm_rad;
+    return std::visit([](const auto& kind) { return level_arm(kind); }, goal.kind);
 }
 
 Configuration placed_at(const Goal& goal, const PlantModel& model, Configuration c, double dx_m, double dz_m) {
-    if (goal.end_effector) {
-        const auto tip =
-            dynamics::end_effector_position(model, dynamics::attitude(model, 0.0, c[plane::arm]), 0.0, 0.0);
-        return {goal.end_effector->x_m + dx_m - tip.x, goal.end_effector->z_m + dz_m - tip.z, c[plane::arm]};
+    return std::visit([&](const auto& kind) { return placed(kind, model, c, dx_m, dz_m); }, goal.kind);
+}
+
+GoalPart part_of(const Goal& goal) noexcept {
+    return std::visit([](const auto& kind) { return part(kind); }, goal.kind);
+}
+
+GoalDrawing drawing_of(const Goal& goal) {
+    return std::visit([](const auto& kind) { return drawing(kind); }, goal.kind);
+}
+
+void raise_goal(Goal& goal, double by_m) {
+    std::visit([&](auto& kind) { lift(kind, by_m); }, goal.kind);
+    for (Goal& each : goal.any_of) {
+        raise_goal(each, by_m);
     }
-    const ConfigurationGoal& pose = *goal.configuration;
-    return {pose.x_m ? *pose.x_m + dx_m : c[plane::x], pose.z_m ? *pose.z_m + dz_m : c[plane::z], c[plane::arm]};
+}
+
+void widen_goal(Goal& goal, double factor) {
+    std::visit([&](auto& kind) { widen(kind, factor); }, goal.kind);
+    for (Goal& each : goal.any_of) {
+        widen_goal(each, factor);
+    }
 }
 
 GoalError goal_error(const Goal& goal, const PlantModel& model, const PlanarPose& pose) {
@@ -106,7 +228,7 @@ double motion_within_goal_m(const Goal& goal, const PlantModel& model, const Pla
                                        : std::min(tolerance.x_m - std::abs(d.x_m), tolerance.z_m - std::abs(d.z_m));
     // The arm's direction turns by at most motion / length, the body by motion / reach, and their difference is the
     // arm's angle.
-    const double turn_per_m = 1 / model.arm_length_m + (nearest.configuration ? 1 / body_reach_m : 0);
+    const double turn_per_m = 1 / model.arm_length_m + (part_of(nearest) == GoalPart::vehicle ? 1 / body_reach_m : 0);
     const double angle_left_m = (tolerance.angle_rad - d.angle_rad) / turn_per_m;
     return level_arm_rad(nearest) ? std::min(distance_left_m, angle_left_m) : distance_left_m;
 }

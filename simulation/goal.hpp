@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
+#include <variant>
 #include <vector>
 
 #include "downwash/base/bounds.hpp"
@@ -12,37 +14,45 @@
 
 namespace downwash {
 
-/// End effector at a point of the plane; optionally with a direction of the arm (pitch + arm angle).
-struct EndEffectorGoal {
-    double x_m = 0, z_m = 0;
-    double tolerance_m = 0.1;                              ///< Euclidean distance, > 0
-    std::optional<double> direction_rad;                   ///< of the arm in the world, a = pitch + arm
-    double direction_tolerance_rad = 0.08726646259971647;  ///< 5 degrees
+/// A configuration of vehicle and arm; an empty coordinate is free.
+struct ConfigurationGoal {
+    std::optional<double> x_m, z_m, arm_rad;
+    double tolerance_m = 0.1;                    ///< Euclidean distance over the given coordinates, > 0
+    double tolerance_rad = 0.08726646259971647;  ///< Greatest deviation of the arm, modulo a turn; 5 degrees.
     /// Where one of them is given, x and z are judged one by one, each within its own tolerance or, without one, within
     /// tolerance_m.
     std::optional<double> tolerance_x_m = {}, tolerance_z_m = {};
 };
 
-/// A configuration of vehicle and arm; an empty coordinate is free.
-struct ConfigurationGoal {
-    std::optional<double> x_m, z_m, arm_rad;
-    double tolerance_m = 0.1;                    ///< Euclidean distance over the given coordinates, > 0
-    double tolerance_rad = 0.08726646259971647;  ///< of the arm, modulo a turn; 5 degrees
-    /// As for the end effector.
+/// End effector at a point of the plane; optionally with a direction of the arm (pitch + arm angle).
+struct EndEffectorGoal {
+    double x_m = 0, z_m = 0;
+    double tolerance_m = 0.1;                              ///< Euclidean distance, > 0
+    std::optional<double> direction_rad;                   ///< Direction of the arm in the world, a = pitch + arm.
+    double direction_tolerance_rad = 0.08726646259971647;  ///< 5 degrees
+    /// The tolerances of x and z one by one, as of ConfigurationGoal.
     std::optional<double> tolerance_x_m = {}, tolerance_z_m = {};
 };
 
-/// Where the flight must end and stay. Exactly one of end_effector, configuration, any_of and contact is set; to
-/// contact belong the alternatives that with_touches() finds.
+/// Every kind of goal. What distinguishes kinds asks all of them: geometry in simulation/goal.cpp, keys and errors in
+/// problems/goal_kinds.cpp, the judge in judge/goals.cpp. The compiler names the answers that a new kind lacks.
+using GoalKind = std::variant<ConfigurationGoal, EndEffectorGoal, ContactGoal>;
+
+/// Where the flight must end and stay. One that nobody filled in is a configuration that is free in every coordinate,
+/// which is an error.
 struct Goal {
-    std::optional<EndEffectorGoal> end_effector;
-    std::optional<ConfigurationGoal> configuration;
-    std::optional<ContactGoal> contact;  ///< the force is held for hold_s
-    double hold_s = 5;                   ///< the last reference point is held for so long, >= 1
-    std::vector<Goal>
-        any_of;  ///< alternatives: the vehicle must reach one of them and hold it as long as that one says; not nested
-    std::optional<Touch> touch;  ///< follows the hover, where an alternative belongs to a contact
+    GoalKind kind;      ///< Says nothing where there are alternatives, but for a contact.
+    double hold_s = 5;  ///< The last reference point is held for so long, >= 1.
+    /// Alternatives: the vehicle must reach one of them and hold it as long as that one says; not nested. Those of a
+    /// contact are the places from which the robot can touch, which with_touches() finds.
+    std::vector<Goal> any_of;
+    std::optional<Touch> touch;  ///< Follows the hover, where an alternative belongs to a contact.
 };
+
+/// Whether a goal asks the robot to touch a surface.
+[[nodiscard]] inline bool asks_for_contact(const Goal& goal) noexcept {
+    return std::holds_alternative<ContactGoal>(goal.kind);
+}
 
 /// The touch that follows when a reference ends at a point; nullptr where none does.
 [[nodiscard]] DOWNWASH_EXPORT const Touch* touch_at(const Goal& goal, const PlantModel& model, const PlanarPose& level);
@@ -53,16 +63,16 @@ struct Goal {
 /// How far a vehicle is from a goal, coordinate by coordinate; 0 where the goal leaves it free.
 struct GoalDeviation {
     double x_m = 0, z_m = 0;
-    double angle_rad = 0;  ///< of the arm or its direction, modulo a turn, >= 0
+    double angle_rad = 0;  ///< Turn of the arm or its direction, modulo a turn, >= 0.
 };
 
-/// How far that may be: (x, z) within a disc or an upright rectangle, and an angle.
+/// How far a vehicle may be from a goal: (x, z) within a disc or an upright rectangle, and an angle.
 struct GoalTolerance {
-    double x_m = 0, z_m = 0;  ///< half widths; of a disc its radius
+    double x_m = 0, z_m = 0;  ///< Half widths; a disc has its radius in both.
     bool is_disc = true;
     double angle_rad = 0;
 
-    /// So large a part of it.
+    /// A tolerance that is `share` times as large.
     [[nodiscard]] DOWNWASH_EXPORT GoalTolerance times(double share) const noexcept;
 
     /// The part that a planned reference may use: usable_tolerance_share.
@@ -72,7 +82,7 @@ struct GoalTolerance {
     [[nodiscard]] DOWNWASH_EXPORT double used_share(const GoalDeviation& deviation) const noexcept;
 };
 
-/// Of a goal without alternatives.
+/// The tolerance of a goal without alternatives.
 [[nodiscard]] DOWNWASH_EXPORT GoalTolerance tolerance_of(const Goal& goal) noexcept;
 
 /// The deviation of a pose from a goal without alternatives.
@@ -88,11 +98,38 @@ struct GoalTolerance {
 [[nodiscard]] DOWNWASH_EXPORT Configuration placed_at(const Goal& goal, const PlantModel& model,
                                                       Configuration configuration, double dx_m, double dz_m);
 
+/// What of the robot a goal judges.
+enum class GoalPart : std::uint8_t {
+    end_effector,  ///< The end effector, and the direction of the arm in the world.
+    vehicle,       ///< The centre of mass, and the angle of the arm from the vehicle's nose.
+};
+
+/// What of the robot a goal without alternatives judges.
+[[nodiscard]] DOWNWASH_EXPORT GoalPart part_of(const Goal& goal) noexcept;
+
+/// Closed lines in the plane of motion [m]; what an odd number of them surrounds is inside.
+using GoalOutline = std::vector<std::vector<PlaneVector>>;
+
+/// How pictures show a goal: its tolerance around a middle, or an outline.
+struct GoalDrawing {
+    std::optional<double> x_m, z_m;  ///< The middle; empty: the goal leaves that coordinate free.
+    GoalOutline outline;             ///< Where what is judged may be; none: within the tolerance around the middle.
+};
+
+/// How pictures show a goal without alternatives.
+[[nodiscard]] DOWNWASH_EXPORT GoalDrawing drawing_of(const Goal& goal);
+
+/// Moves a goal and its alternatives upwards, to the millimetre. What is free in z and contacts stay.
+DOWNWASH_EXPORT void raise_goal(Goal& goal, double by_m);
+
+/// Multiplies the tolerances of place of a goal and its alternatives. Those of contacts stay.
+DOWNWASH_EXPORT void widen_goal(Goal& goal, double factor);
+
 /// How far a vehicle is from a goal.
 struct GoalError {
     double distance_m = 0;  ///< Euclidean, over the coordinates that the goal gives
-    double angle_rad = 0;   ///< of the arm or its direction, modulo a turn; 0 when the goal leaves it free
-    double used_share = 0;  ///< the greatest share of a tolerance that is used; see is_met()
+    double angle_rad = 0;   ///< Turn of the arm or its direction, modulo a turn; 0 when the goal leaves it free.
+    double used_share = 0;  ///< The greatest share of a tolerance that is used; see is_met().
 };
 
 /// The error of a pose; among alternatives that of the nearest.
@@ -116,9 +153,9 @@ struct GoalError {
 /// The share of each tolerance that a planned reference may use. The rest is for the tracking error of the flight.
 inline constexpr double usable_tolerance_share = 0.9;
 
-/// The vehicle must meet the goal during this time at the end of the hold [s], ...
+/// How long the vehicle must meet the goal at the end of the hold [s].
 inline constexpr double goal_settling_s = 1.0;
-/// ... with the vehicle's centre of mass slower than this [m/s].
+/// The vehicle's centre of mass must be slower than this meanwhile [m/s].
 inline constexpr double goal_max_speed_m_s = 0.05;
 
 }  // namespace downwash

@@ -9,7 +9,7 @@
 #include "downwash/controllers/control_law.hpp"
 #include "downwash/dynamics/plant.hpp"
 #include "downwash/scene/shapes.hpp"
-#include "downwash/simulation/robot_uncertainty.hpp"
+#include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash {
 
@@ -21,9 +21,9 @@ struct Robot {
     RotorParameters rotors;
     ArmParameters arm;
     Controller controller;
-    /// What is not known of this very vehicle. Where a problem file has an uncertainty, this is its default; flights
+    /// How well vehicle and sensors are known. Where a problem file has an uncertainty, this is its default; flights
     /// depend on Problem::uncertainty alone.
-    std::optional<RobotUncertainty> uncertainty;
+    std::optional<Uncertainty> uncertainty;
 
     /// Total mass [kg].
     [[nodiscard]] double mass_kg() const noexcept { return multirotor.mass_kg + arm.mass_kg; }

@@ -7,7 +7,7 @@
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/simulation/robot.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 #include "downwash/simulation/world_numbers.hpp"
 
 namespace downwash {

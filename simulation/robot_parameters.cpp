@@ -384,11 +384,11 @@ void add_controller(Rows& rows) {
 }
 
 /// What a robot says of itself; the defaults where it says nothing.
-const RobotUncertainty& uncertainty_of(const Robot& robot) {
-    static const RobotUncertainty usual;
+const Uncertainty& uncertainty_of(const Robot& robot) {
+    static const Uncertainty usual;
     return robot.uncertainty ? *robot.uncertainty : usual;
 }
-RobotUncertainty& uncertainty_of(Robot& robot) {
+Uncertainty& uncertainty_of(Robot& robot) {
     return robot.uncertainty ? *robot.uncertainty : robot.uncertainty.emplace();
 }
 
@@ -397,9 +397,11 @@ void add_uncertainty(Rows& rows) {
         "uncertainty",
         "what is not known exactly of this vehicle: defaults for problems that have an uncertainty; others ignore it",
         [](auto& r) -> auto& { return r.uncertainty; }));
-    for (const Parameter<RobotUncertainty>& inner : robot_uncertainty_rows()) {
-        rows.push_back(parameters::nested<Robot>(
-            inner, "uncertainty.", [](auto& r) -> auto& { return uncertainty_of(r); }));
+    for (const UncertaintyKey& key : uncertainty_keys()) {
+        if (key.is_of_robot) {
+            add_uncertainty_row(
+                rows, key, [](auto& r) -> auto& { return uncertainty_of(r); });
+        }
     }
 }
 

@@ -1,63 +1,42 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
-#include <span>
-#include <string_view>
-
-#include "downwash/base/export.hpp"
 #include "downwash/base/spread.hpp"
-#include "downwash/simulation/robot_uncertainty.hpp"
-#include "downwash/simulation/world.hpp"
 
 namespace downwash {
 
-/// What is not known exactly, and how well it is known: of vehicle and sensors, and of the world around them.
-/// docs/model.md 9 says where the defaults come from.
-struct Uncertainty : RobotUncertainty {
-    // Of K - 1, relative: the scatter of all measurements about the default models (docs/aeromap.md). A normal
+/// How well the numbers of vehicle, sensors, surfaces and air are known. A robot file may state those of vehicle and
+/// sensors. docs/model.md 9 says where the defaults come from; simulation/world_parameters.hpp has the keys.
+struct Uncertainty {
+    // Relative to K - 1: the scatter of all measurements about the default models (docs/aeromap.md). A normal
     // distribution of the ground's would turn lift into suction; a uniform one of that standard deviation does not.
     Spread ceiling_scale = Spread::of_sd(0.15);
     Spread ground_scale = Spread::over(-0.8, 0.8);
     Spread scene_x_m = Spread::of_sd(0.02);
     Spread scene_z_m = Spread::of_sd(0.02);
 
+    Spread mass_scale = Spread::of_sd(0.02);
+    Spread inertia_scale = Spread::of_sd(0.05);
+    Spread arm_mass_scale = Spread::of_sd(0.05);
+    Spread center_of_mass_x_m = Spread::of_sd(0.005);
+    Spread center_of_mass_z_m = Spread::of_sd(0.005);
+    Spread thrust_scale = Spread::of_sd(0.03);
+    Spread rotor_thrust_scale = Spread::of_sd(0.01);             ///< Each rotor draws a number of its own.
+    Spread rotor_time_constant_s = Spread::of_factor(0.7, 1.5);  ///< A range is one of the time constant itself.
+    Spread delay_s = Spread::of_factor(0.5, 1.5);                ///< A range is one of the delay itself.
+
+    Spread position_bias_m = Spread::of_sd(0.01);  ///< x and z draw a number each.
+    Spread pitch_bias_rad = Spread::of_sd(0.005235987755982988);
+    Spread position_noise_m = Spread::of_sd(0.005);  ///< Only the sd of a noise has a meaning.
+    Spread velocity_noise_m_s = Spread::of_sd(0.02);
+    Spread gyro_noise_rad_s = Spread::of_sd(0.015);
+
     Spread wind_x_m_s = Spread::of_sd(0.5);
     Spread wind_z_m_s = Spread::of_sd(0.1);
     Spread gust_m_s = Spread::of_sd(0.3);
-    double gust_length_x_m = 23;  ///< of the Dryden model 3 m above the ground
+    double gust_length_x_m = 23;  ///< Length scales of the Dryden model 3 m above the ground.
     double gust_length_z_m = 3;
+
+    friend constexpr bool operator==(const Uncertainty&, const Uncertainty&) = default;
 };
-
-/// A number that worlds draw, each for itself.
-struct WorldParameter {
-    std::string_view name;  ///< key below `uncertainty`, with a number for each rotor
-    Spread Uncertainty::*spread;
-    double World::*value;  ///< nullptr: World::rotor_thrust_scale[rotor]
-    int rotor = 0;
-    double (*believed)(const Robot&) = nullptr;  ///< of a number that the robot has; a range is one of this number then
-
-    /// What a world has.
-    [[nodiscard]] double of(const World& world) const noexcept {
-        return value != nullptr ? world.*value : world.rotor_thrust_scale[rotor];
-    }
-};
-
-/// All of them; those of rotors that a robot does not have change nothing.
-[[nodiscard]] DOWNWASH_EXPORT std::span<const WorldParameter> world_parameters() noexcept;
-
-/// The world in which each parameter is at a quantile of its spread, in the order of world_parameters().
-/// @param quantiles from 0 to 1   @param tape which noise and which gusts
-[[nodiscard]] DOWNWASH_EXPORT World world_at(const Uncertainty& uncertainty, const Robot& robot,
-                                             std::span<const double> quantiles, std::uint64_t tape) noexcept;
-
-/// A world drawn at random. The same seed and index give the same world on any machine; index 0 is the nominal world.
-[[nodiscard]] DOWNWASH_EXPORT World draw_world(const Uncertainty& uncertainty, const Robot& robot, std::uint64_t seed,
-                                               std::uint64_t index) noexcept;
-
-/// What is wrong with an uncertainty beside a robot: rotors that would follow faster than ticks can tell, delays that
-/// are too long. Keys as in files, without `uncertainty.`.
-[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> uncertainty_errors(const RobotUncertainty& uncertainty,
-                                                                       const Robot& robot);
 
 }  // namespace downwash

@@ -10,8 +10,8 @@ namespace downwash {
 namespace {
 
 /// The robot that really flies, seen from the multirotor's true centre of mass.
-Robot real_robot(const Robot& believed, const World& world) {
-    Robot robot = believed;
+Robot real_robot(const Robot& nominal, const World& world) {
+    Robot robot = nominal;
     robot.multirotor.mass_kg *= 1 + world.mass_scale;
     robot.multirotor.pitch_inertia_kg_m2 *= 1 + world.inertia_scale;
     robot.arm.mass_kg *= 1 + world.arm_mass_scale;

@@ -9,44 +9,44 @@
 
 namespace downwash {
 
-/// What neither controller nor planner knows, in one world: the differences from what they believe. All zero is the
+/// What neither controller nor planner knows, in one world: the differences from the nominal numbers. All zero is the
 /// nominal world. docs/model.md 9 says what each of them changes.
 struct World {
-    double ceiling_scale = 0;  ///< relative change of K - 1 under surfaces
-    double ground_scale = 0;   ///< the same over surfaces
-    double scene_x_m = 0;      ///< where the surfaces are, from where they are believed to be
+    double ceiling_scale = 0;  ///< Relative change of K - 1 under surfaces.
+    double ground_scale = 0;   ///< Relative change of K - 1 over surfaces.
+    double scene_x_m = 0;      ///< Displacement of all surfaces and obstacles.
     double scene_z_m = 0;
-    double mass_scale = 0;          ///< relative, of the multirotor
-    double inertia_scale = 0;       ///< relative, of both bodies
-    double arm_mass_scale = 0;      ///< relative
-    double center_of_mass_x_m = 0;  ///< of the multirotor, in the body frame
+    double mass_scale = 0;          ///< Relative change of the multirotor's mass.
+    double inertia_scale = 0;       ///< Relative change of both inertias.
+    double arm_mass_scale = 0;      ///< Relative change of the arm's mass.
+    double center_of_mass_x_m = 0;  ///< Place of the multirotor's centre of mass, in the body frame.
     double center_of_mass_z_m = 0;
-    double thrust_scale = 0;                     ///< relative, of all rotors
-    double rotor_thrust_scale[max_rotors] = {};  ///< relative, of each
-    double rotor_time_constant_s = 0;            ///< added to that of the robot
-    double delay_s = 0;                          ///< added to that of the robot
-    double position_bias_x_m = 0;                ///< of what the controller sees
+    double thrust_scale = 0;                     ///< Relative change of the thrust of all rotors.
+    double rotor_thrust_scale[max_rotors] = {};  ///< Relative change of the thrust of each rotor.
+    double rotor_time_constant_s = 0;            ///< Added to that of the robot.
+    double delay_s = 0;                          ///< Added to that of the robot.
+    double position_bias_x_m = 0;                ///< Constant error of the position that the controller sees.
     double position_bias_z_m = 0;
-    double pitch_bias_rad = 0;
-    double wind_x_m_s = 0;  ///< steady
+    double pitch_bias_rad = 0;  ///< Constant error of the pitch that the controller sees.
+    double wind_x_m_s = 0;      ///< Steady wind.
     double wind_z_m_s = 0;
 
-    // The same in every world of a problem but the nominal one.
-    double position_noise_m = 0;  ///< standard deviations of what the controller sees, anew in every tick
+    // Alike in every world of a problem but the nominal one.
+    double position_noise_m = 0;  ///< Standard deviations of what the controller sees, anew in every tick.
     double velocity_noise_m_s = 0;
     double gyro_noise_rad_s = 0;
-    double gust_m_s = 0;         ///< standard deviation of the Dryden gusts, along x and along z
-    double gust_length_x_m = 1;  ///< their length scales
+    double gust_m_s = 0;         ///< Standard deviation of the Dryden gusts, along x and along z.
+    double gust_length_x_m = 1;  ///< Length scales of the gusts.
     double gust_length_z_m = 1;
 
-    std::uint64_t tape = 0;  ///< which noise and which gusts
+    std::uint64_t tape = 0;  ///< Which noise and which gusts.
 };
 
 /// A world as the tick needs it.
 struct FlownWorld {
     World world;
     simulation::WorldNumbers<double> numbers;
-    bool has_noise;  ///< in what the controller sees, or as gusts
+    bool has_noise;  ///< Noise in what the controller sees, or gusts.
 };
 
 /// A world in numbers.
@@ -54,7 +54,7 @@ struct FlownWorld {
 /// the robot has a lag, and the delay stays within 0 and simulation::max_delay_ticks
 [[nodiscard]] DOWNWASH_EXPORT FlownWorld make_world(const Robot& robot, const World& world);
 
-/// The same world without noise and gusts.
+/// A world without its noise and gusts.
 [[nodiscard]] DOWNWASH_EXPORT FlownWorld without_noise(const FlownWorld& world) noexcept;
 
 /// What a world remembers as a flight begins: the vehicle was always as it is, and gusts blow already.

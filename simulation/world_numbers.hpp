@@ -31,16 +31,16 @@ struct WorldMemory {
 template <class T>
 struct WorldNumbers {
     PlantNumbers<T> plant;                     ///< what really flies, about its true centre of mass
-    T center_of_mass_x_m, center_of_mass_z_m;  ///< of the multirotor, in the body frame of the robot file
+    T center_of_mass_x_m, center_of_mass_z_m;  ///< The multirotor's, in the body frame of the robot file.
     T rotor_thrust_scale[max_rotors];          ///< thrust coefficient over the nominal one
     T ground_scale, ceiling_scale;             ///< relative changes of K - 1
-    T scene_x_m, scene_z_m;                    ///< where surfaces are, from where they are believed to be
+    T scene_x_m, scene_z_m;                    ///< Displacement of all surfaces.
     T delay_ticks;                             ///< age of what the controller sees, 0 to max_delay_ticks
-    T position_bias_m[2], pitch_bias_rad;      ///< of what it sees
+    T position_bias_m[2], pitch_bias_rad;      ///< Constant errors of what it sees.
     T position_noise_m, velocity_noise_m_s, gyro_noise_rad_s;  ///< standard deviations, of every tick
     T wind_m_s[2];                                             ///< steady, x and z
     T gust_m_s;                                     ///< standard deviation of the gusts, the same for x and z
-    T gust_x_decay, gust_z_decay, gust_z_coupling;  ///< of the filters from tick to tick
+    T gust_x_decay, gust_z_decay, gust_z_coupling;  ///< Decay of the filters from tick to tick.
     T gust_x_noise, gust_z_noise[3];                ///< Cholesky factor of what each tick adds: x; z as 11, 21, 22
 };
 

@@ -298,8 +298,8 @@ void run(const Options& options, const Problem& problem, std::uint32_t seed) {
     write(start.get(), problem.start.x_m, problem.start.z_m);
     definition->addStartState(start);
     Progress progress(options.goal_error);
-    definition->setGoal(
-        std::make_shared<RestGoal>(information, problem.goal.configuration.value(), options.goal_error, progress));
+    definition->setGoal(std::make_shared<RestGoal>(information, std::get<ConfigurationGoal>(problem.goal.kind),
+                                                   options.goal_error, progress));
     const auto objective = std::make_shared<FlightTime>(information);
     objective->setCostThreshold(ob::Cost(0));  // search on to the end
     definition->setOptimizationObjective(objective);

@@ -13,6 +13,7 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 using namespace downwash;
 using bench::Bridge;

@@ -20,6 +20,7 @@
 #include "downwash/bench/statistics.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 using namespace downwash;
 

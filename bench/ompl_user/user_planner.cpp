@@ -114,7 +114,7 @@ class TipGoal : public ob::GoalSampleableRegion {
     TipGoal(const ob::SpaceInformationPtr& information, const Problem& problem, std::size_t particles)
         : ob::GoalSampleableRegion(information),
           particles_(particles),
-          goal_(problem.goal.end_effector.value()),
+          goal_(std::get<EndEffectorGoal>(problem.goal.kind)),
           length_m_(problem.robot.arm.length_m),
           joint_x_m_(problem.robot.arm.joint_x_m),
           joint_z_m_(problem.robot.arm.joint_z_m) {

@@ -63,7 +63,8 @@ Problem random_scene(const Options& options, unsigned seed) {
     };
     const auto is_apart = [&](double x_m, double z_m) {
         return std::ranges::none_of(problem.targets, [&](const Goal& other) {
-            return std::hypot(x_m - *other.configuration->x_m, z_m - *other.configuration->z_m) < 2;
+            const auto& place = std::get<ConfigurationGoal>(other.kind);
+            return std::hypot(x_m - *place.x_m, z_m - *place.z_m) < 2;
         });
     };
     problem.goal = {};
@@ -71,7 +72,7 @@ Problem random_scene(const Options& options, unsigned seed) {
         const double x_m = random.uniform(-11, 11), z_m = random.uniform(1.8, 10.5);
         if (is_free(x_m, z_m) && is_apart(x_m, z_m)) {
             Goal target;
-            target.configuration = ConfigurationGoal{.x_m = x_m, .z_m = z_m, .arm_rad = {}, .tolerance_m = 0.15};
+            target.kind = ConfigurationGoal{.x_m = x_m, .z_m = z_m, .arm_rad = {}, .tolerance_m = 0.15};
             target.hold_s = 1;
             problem.targets.push_back(target);
         }

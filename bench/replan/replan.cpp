@@ -16,7 +16,7 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/simulation/execution.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 using namespace downwash;
 
@@ -193,7 +193,7 @@ Execution flown(const Planner& planner, const FlightState& state, const Answer& 
     if (answer.advice == Advice::stop || answer.advice == Advice::none) {
         const Configuration last = answer.plan.last();
         goals = {Goal{}};
-        goals[0].configuration = ConfigurationGoal{last[plane::x], last[plane::z], last[plane::arm], 1, 1};
+        goals[0].kind = ConfigurationGoal{last[plane::x], last[plane::z], last[plane::arm], 1, 1};
     }
     return execute(planner.model(), state, answer.plan.reference, goals, true, {&world, tick});
 }

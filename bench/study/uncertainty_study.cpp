@@ -2,19 +2,22 @@
 
 #include <utility>
 
+#include "downwash/simulation/world_parameters.hpp"
+
 namespace downwash::bench {
 namespace {
 
 constexpr const char* own_setting = "the problem's own";
 constexpr const char* camp_setting = "CAMP's";
 
-/// Searches in the nominal world.
+/// Everything is nominal.
 Uncertainty no_uncertainty() {
     Uncertainty none;
-    for (const WorldParameter& parameter : world_parameters()) {
-        none.*parameter.spread = downwash::Spread();
+    for (const UncertaintyKey& key : uncertainty_keys()) {
+        if (key.spread != nullptr) {
+            none.*key.spread = downwash::Spread();
+        }
     }
-    none.position_noise_m = none.velocity_noise_m_s = none.gyro_noise_rad_s = none.gust_m_s = downwash::Spread();
     return none;
 }
 

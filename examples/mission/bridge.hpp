@@ -26,7 +26,7 @@ inline downwash::Problem read_bridge(const std::string& file) {
     deck_of(problem);
     const std::vector<downwash::Goal> targets = downwash::goals_of(problem);
     if (!problem.targets.empty() || !std::all_of(targets.begin(), targets.end(), [](const downwash::Goal& each) {
-            return each.end_effector.has_value();
+            return std::holds_alternative<downwash::EndEffectorGoal>(each.kind);
         })) {
         downwash::throw_input_error("is no list of places for the end effector, which a mission needs", "goal");
     }
@@ -40,7 +40,7 @@ inline double underside_m(const downwash::Obstacle& deck) {
 
 /// Whether a target is part of the deck: less than 0.2 m below its underside.
 inline bool hangs_on(const downwash::Obstacle& deck, const downwash::Goal& target) {
-    return target.end_effector->z_m > underside_m(deck) - 0.2;
+    return std::get<downwash::EndEffectorGoal>(target.kind).z_m > underside_m(deck) - 0.2;
 }
 
 /// Moves the deck down, and the targets that hang on it.
@@ -48,7 +48,7 @@ inline void lower_deck(downwash::Problem& problem, double by_m) {
     downwash::Obstacle& deck = deck_of(problem);
     const auto lower = [&](downwash::Goal& target) {
         if (hangs_on(deck, target)) {
-            target.end_effector->z_m -= by_m;
+            std::get<downwash::EndEffectorGoal>(target.kind).z_m -= by_m;
         }
     };
     std::for_each(problem.stops.begin(), problem.stops.end(), lower);

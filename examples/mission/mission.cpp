@@ -87,6 +87,7 @@ class Mission {
 
  private:
     [[nodiscard]] Goal target() const { return goals_of(bridge_)[target_]; }
+    [[nodiscard]] EndEffectorGoal place() const { return std::get<EndEffectorGoal>(target().kind); }
     [[nodiscard]] std::int64_t now() const { return rows_.back().tick; }
     [[nodiscard]] double now_s() const { return static_cast<double>(now()) * link_.tick_s(); }
     [[nodiscard]] std::int64_t ticks(double time_s) const { return std::llround(time_s / link_.tick_s()); }
@@ -110,7 +111,7 @@ class Mission {
                 replan("the vehicle has stopped", {});
             } else if (has_arrived) {
                 const double error_m = target_error_m();
-                if (error_m <= target().end_effector->tolerance_m) {
+                if (error_m <= place().tolerance_m) {
                     std::printf("%8.2f s  target %zu held, %.3f m off\n", now_s(), target_ + 1, error_m);
                     return;
                 }
@@ -134,10 +135,10 @@ class Mission {
     }
 
     void replan_below(double lower_m) {
-        const double before_m = target().end_effector->z_m;
+        const double before_m = place().z_m;
         lower_deck(bridge_, lower_m);
         SceneChange change{{deck_of(bridge_)}, {}, {}};
-        if (target().end_effector->z_m != before_m) {
+        if (place().z_m != before_m) {
             change.goal = target();
         }
         char reason[80];
@@ -264,7 +265,7 @@ class Mission {
             x_m.push_back(row.x_m + length_m * std::cos(row.pitch_rad + row.arm_rad));
             z_m.push_back(row.z_m - length_m * std::sin(row.pitch_rad + row.arm_rad));
         }
-        return std::hypot(mean(x_m) - target().end_effector->x_m, mean(z_m) - target().end_effector->z_m);
+        return std::hypot(mean(x_m) - place().x_m, mean(z_m) - place().z_m);
     }
 
     VehicleLink& link_;

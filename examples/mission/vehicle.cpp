@@ -20,7 +20,7 @@
 #include <downwash/judge/simulated_vehicle.hpp>
 #include <downwash/planner/planner.hpp>
 #include <downwash/scene/scene.hpp>
-#include <downwash/simulation/uncertainty.hpp>
+#include <downwash/simulation/world_parameters.hpp>
 
 #include "bridge.hpp"
 #include "line_socket.hpp"

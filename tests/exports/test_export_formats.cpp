@@ -202,7 +202,7 @@ TEST_CASE("a mission keeps to the curves of a plan that passes its knots at spee
 
 TEST_CASE("a run that touches something has no set-points and no mission") {
     RunRecord run = record();
-    run.problem.goal.contact = ContactGoal{};
+    run.problem.goal.kind = ContactGoal{};
     for (const char* format : {"csv", "ros"}) {
         CHECK_THROWS_WITH(written(format, run), Catch::Contains("follows the measured force"));
     }

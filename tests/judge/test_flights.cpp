@@ -12,7 +12,7 @@
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/visit_order.hpp"
 #include "downwash/simulation/execution.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 #include "shipped.hpp"
 
 // The judge's flights against the planner's.
@@ -96,7 +96,7 @@ TEST_CASE("The judge flies on from the middle of a flight as the planner does, w
             REQUIRE(fly_along(*model, map.get(), whole, 600, vehicle));
             problem.start = start_of(*model, vehicle, there);
             problem.goal = Goal{};
-            problem.goal.configuration = ConfigurationGoal{end.position[0], end.position[1], {}};
+            problem.goal.kind = ConfigurationGoal{end.position[0], end.position[1], {}};
             const Plan rest = rest_of_plan(whole, 600, there);
             const judge::JudgedFlight mine = judge::PlanJudge(problem).fly(rest, {});
             const auto theirs = executed(problem, rest, true, std::nullopt);

@@ -5,7 +5,7 @@
 
 #include "../support/test_problem.hpp"
 #include "downwash/judge/world_runs.hpp"
-#include "downwash/simulation/uncertainty.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 using namespace downwash;
 using namespace downwash::test;

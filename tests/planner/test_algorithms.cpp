@@ -61,7 +61,7 @@ TEST_CASE("every algorithm solves an easy problem from start to goal, twice with
         CHECK(a.planning.iterations <= *problem.planner.max_iterations);
         CHECK(a.plan->reference.front().tick == 0);
         CHECK(a.plan->first() == problem.start.configuration());
-        CHECK(test::tip_error_m(problem, a.plan->last()) <= problem.goal.end_effector->tolerance_m);
+        CHECK(test::tip_error_m(problem, a.plan->last()) <= test::end_effector(problem.goal).tolerance_m);
         if (variant == Variant::mp_arm_ada) {
             CHECK(a.execution->outcome == Outcome::ok);
             CHECK(a.execution_cost == Approx(a.cost).epsilon(0.01));
@@ -145,7 +145,8 @@ TEST_CASE("where hardly any sample of the goal is clear, what is called solved e
             const Solution solution = solve(problem);
             if (solution.status == Status::solved) {
                 ++solved;
-                CHECK(test::tip_error_m(problem, solution.plan->last()) <= problem.goal.end_effector->tolerance_m);
+                CHECK(test::tip_error_m(problem, solution.plan->last()) <=
+                      test::end_effector(problem.goal).tolerance_m);
             }
         }
         CHECK(solved > 0);

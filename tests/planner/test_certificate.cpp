@@ -16,6 +16,7 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 // What plans are worth in other worlds than the nominal one.
 
@@ -212,10 +213,10 @@ TEST_CASE("Flights of a plan that fail say on the way to which goal, as direct f
 TEST_CASE("A search whose certificates fail on the way to an earlier goal names that goal and ends") {
     Problem problem = uncertain_problem();
     problem.stops = {tip_goal(-1, 4.2)};
-    problem.stops[0].end_effector->tolerance_m = 0.03;
+    test::end_effector(problem.stops[0]).tolerance_m = 0.03;
     problem.stops[0].hold_s = 1;
     problem.uncertainty->position_bias_m = Spread::of_sd(0.03);
-    problem.goal.end_effector->tolerance_m = 0.5;
+    test::end_effector(problem.goal).tolerance_m = 0.5;
     problem.planner.max_iterations = 300;
     SolveOptions options;
     options.stop_at_first_solution = true;
@@ -267,7 +268,7 @@ TEST_CASE("A plan that only works in the nominal world is approximate, with the 
     Problem problem = uncertain_problem();
     problem.planner.worlds = 1;
     problem.planner.max_failure_probability = 0.001;
-    problem.goal.end_effector->tolerance_m = 0.03;
+    test::end_effector(problem.goal).tolerance_m = 0.03;
     problem.uncertainty->position_bias_m = Spread::of_sd(0.03);
     const Solution solution = solve(problem);
     CHECK(solution.status == Status::approximate);

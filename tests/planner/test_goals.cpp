@@ -127,8 +127,8 @@ TEST_CASE("goals in a row are visited in their order, each held for its own time
         const Solution solution = solve(problem);
         REQUIRE(solution.status == Status::solved);
         const Plan& plan = *solution.plan;
-        const std::int64_t first = standing_tick(plan, *problem.stops[0].configuration, 2);
-        const std::int64_t second = standing_tick(plan, *problem.stops[1].configuration, 1.5);
+        const std::int64_t first = standing_tick(plan, test::configuration(problem.stops[0]), 2);
+        const std::int64_t second = standing_tick(plan, test::configuration(problem.stops[1]), 1.5);
         CHECK(first > 0);
         CHECK(second > first + 200);
         CHECK(plan.reference.back().tick > second + 150);
@@ -300,10 +300,10 @@ TEST_CASE("of several goals the cheap one is flown to and held for its own time"
 TEST_CASE("a wide tolerance along the goal is made use of, the narrow one across it is kept") {
     Problem problem = test::ceiling_problem();
     problem.planner.max_iterations = 150;
-    problem.goal.end_effector->x_m = 0;
-    problem.goal.end_effector->tolerance_x_m = 2;
-    problem.goal.end_effector->tolerance_z_m = 0.05;
-    problem.goal.end_effector->direction_rad = -test::quarter_turn;
+    test::end_effector(problem.goal).x_m = 0;
+    test::end_effector(problem.goal).tolerance_x_m = 2;
+    test::end_effector(problem.goal).tolerance_z_m = 0.05;
+    test::end_effector(problem.goal).direction_rad = -test::quarter_turn;
     const Solution solution = solve(problem);
     REQUIRE(solution.status == Status::solved);
     REQUIRE(solution.execution->outcome == Outcome::ok);

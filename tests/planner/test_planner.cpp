@@ -134,7 +134,7 @@ TEST_CASE("where nothing but a stop is safe it stops, and where nothing is it sa
     change.put.push_back(test::box("wall", {0.4, 6, 4.9}, {here.x_m + room_m + 0.2, 0, 2.5}));
     const Answer answer = planner.replan(here, tick, change, iterations(100));
     Goal anywhere = test::configuration_goal(answer.plan.last()[plane::x], answer.plan.last()[plane::z]);
-    anywhere.configuration->tolerance_m = 1;
+    test::configuration(anywhere).tolerance_m = 1;
     const Execution flight =
         execute(planner.model(), start_state(planner.model(), here), answer.plan.reference, anywhere, true);
     if (room_m > 2) {

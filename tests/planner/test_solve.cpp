@@ -32,7 +32,7 @@ Problem with(Variant variant, std::uint64_t geometric_iterations, std::uint64_t 
 /// Where the vehicle arrives and cannot hold.
 Problem right_under_the_ceiling() {
     Problem problem = test::with_place(0, 5 - 0.06 - 0.16);
-    problem.goal.configuration->tolerance_m = 0.02;
+    test::configuration(problem.goal).tolerance_m = 0.02;
     problem.planner.safety_margin_m = 0.01;
     return problem;
 }
@@ -68,7 +68,7 @@ TEST_CASE("an aerodynamics-aware plan is reported only with a flight that held a
         CHECK(solution.execution->aero);
         CHECK(solution.execution->outcome == Outcome::ok);
         CHECK(solution.execution->min_clearance_m >= problem.planner.safety_margin_m);
-        CHECK(solution.execution->goal_error_m <= problem.goal.end_effector->tolerance_m);
+        CHECK(solution.execution->goal_error_m <= test::end_effector(problem.goal).tolerance_m);
         CHECK(solution.execution->duration_s ==
               Approx(solution.plan->duration_s() + problem.goal.hold_s).margin(0.011));
         // The map is within 0.01 of the direct effect, so the flights differ little.
@@ -172,7 +172,7 @@ TEST_CASE("improvements only ever get cheaper and the last one is the plan's cos
             REQUIRE(solution.status == Status::solved);
             const auto& improvements = solution.planning.improvements;
             REQUIRE(!improvements.empty());
-            CHECK(test::tip_error_m(problem, solution.plan->last()) <= problem.goal.end_effector->tolerance_m);
+            CHECK(test::tip_error_m(problem, solution.plan->last()) <= test::end_effector(problem.goal).tolerance_m);
             for (std::size_t i = 1; i < improvements.size(); ++i) {
                 CHECK(improvements[i].cost <= improvements[i - 1].cost);
                 if (variant == Variant::mp_arm_ada) {
@@ -202,7 +202,7 @@ TEST_CASE("a goal point that only its tolerance makes reachable is reached") {
     for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_ada}) {
         CAPTURE(name_of(variant));
         Problem problem = with(variant, 3000, 400);
-        problem.goal.end_effector->z_m = 4.985;
+        test::end_effector(problem.goal).z_m = 4.985;
         CHECK(solve(problem).status == Status::solved);
     }
 }
@@ -357,7 +357,7 @@ TEST_CASE("rejections are counted by cause") {
         {"goal_missed",
          [](Problem& p) {
              p = test::with_place(3, 4.3);  // where the ceiling lifts the vehicle, and nothing integrates the error
-             p.goal.configuration->tolerance_m = 0.01;
+             test::configuration(p.goal).tolerance_m = 0.01;
              test::gains_of(p.robot).position_ki = 0;
          }},
     };
@@ -423,7 +423,7 @@ TEST_CASE("where every plan was discarded, the direct flight is what stopped the
 TEST_CASE("a plan that is cheaper in the planner's model only, and not when flown, is no improvement") {
     // Under the ceiling a hover needs less than elsewhere; the planner believes here that it does near the ground.
     Problem problem = test::with_place(3, 3.2);
-    problem.goal.configuration->tolerance_z_m = 1.3;
+    test::configuration(problem.goal).tolerance_z_m = 1.3;
     problem.goal.hold_s = 20;
     problem.planner.max_iterations = 800;
     std::size_t compared = 0;
@@ -443,7 +443,7 @@ TEST_CASE("a plan that is cheaper in the planner's model only, and not when flow
 
 TEST_CASE("where a surface saves energy the aware planner flies and holds along it, and that pays") {
     Problem problem = test::with_place(3, 3.3);  // the deck's lower side at 5 m
-    problem.goal.configuration->tolerance_z_m = 1.5;
+    test::configuration(problem.goal).tolerance_z_m = 1.5;
     problem.goal.hold_s = 60;
     problem.planner.max_iterations = 4000;
     std::vector<double> aware_j, unaware_j;

@@ -16,9 +16,9 @@ namespace {
 Problem contact_problem(const std::string& obstacle, TouchingPart part) {
     Problem problem = ceiling_problem();
     problem.goal = Goal{};
-    problem.goal.contact.emplace();
-    problem.goal.contact->obstacle = obstacle;
-    problem.goal.contact->part = part;
+    auto& contact = problem.goal.kind.emplace<ContactGoal>();
+    contact.obstacle = obstacle;
+    contact.part = part;
     problem.goal.hold_s = 4;
     problem.aero.min_distance_radii = 0.05;
     return problem;
@@ -42,14 +42,14 @@ TEST_CASE("a frame touches a ceiling from places below it, the length of the rob
     const double half_length_m = 0.32 + 0.1905;  // to their rims
     for (const Goal& place : placed.goal.any_of) {
         REQUIRE(place.touch);
-        REQUIRE(place.configuration);
+        REQUIRE(std::holds_alternative<ConfigurationGoal>(place.kind));
         CHECK(place.touch->surface_m.z == Approx(5).margin(1e-5));
         CHECK(place.touch->normal.z == -1);
         CHECK(place.touch->hold_s == 4);
         CHECK(place.touch->frame_points_m.size() == 2);
         CHECK(place.touch->frame_points_m.back().x == Approx(half_length_m));
-        CHECK(*place.configuration->z_m == Approx(5 - 0.3 - top_m).margin(1e-5));
-        CHECK(std::abs(*place.configuration->x_m) <= 3 - half_length_m - 0.1);
+        CHECK(*test::configuration(place).z_m == Approx(5 - 0.3 - top_m).margin(1e-5));
+        CHECK(std::abs(*test::configuration(place).x_m) <= 3 - half_length_m - 0.1);
     }
     CHECK(problem_errors(problem).empty());
     CHECK(plannable(problem).problem.goal.any_of.size() == placed.goal.any_of.size());
@@ -58,22 +58,22 @@ TEST_CASE("a frame touches a ceiling from places below it, the length of the rob
 TEST_CASE("the end of the arm touches a wall from a side, and a ceiling from below, along the arm") {
     Problem problem = contact_problem("wall", TouchingPart::end_effector);
     problem.obstacles.push_back(box("wall", {0.3, 8, 5}, {4.5, 0, 2.5}));
-    problem.goal.contact->z_m = 2;
+    test::contact(problem.goal).z_m = 2;
     const Problem before_wall = with_touches(problem);
     REQUIRE(before_wall.goal.any_of.size() == 1);  // the far side leaves no room within the bounds
     const Goal& place = before_wall.goal.any_of.front();
     CHECK(place.touch->normal.x == -1);
     CHECK(place.touch->surface_m.x == Approx(4.32).margin(1e-5));
-    CHECK(place.end_effector->x_m == Approx(4.02).margin(1e-5));
-    CHECK(place.end_effector->z_m == 2);
-    CHECK(*place.end_effector->direction_rad == 0);
+    CHECK(test::end_effector(place).x_m == Approx(4.02).margin(1e-5));
+    CHECK(test::end_effector(place).z_m == 2);
+    CHECK(*test::end_effector(place).direction_rad == 0);
 
-    problem.goal.contact->obstacle = "ceiling";
-    problem.goal.contact->z_m.reset();
-    problem.goal.contact->x_m = -1;
+    test::contact(problem.goal).obstacle = "ceiling";
+    test::contact(problem.goal).z_m.reset();
+    test::contact(problem.goal).x_m = -1;
     const Problem under_ceiling = with_touches(problem);
     REQUIRE(under_ceiling.goal.any_of.size() == 1);
-    CHECK(*under_ceiling.goal.any_of.front().end_effector->direction_rad == Approx(-quarter_turn));
+    CHECK(*test::end_effector(under_ceiling.goal.any_of.front()).direction_rad == Approx(-quarter_turn));
 }
 
 TEST_CASE("a contact that a soft law would settle for minutes is an error") {
@@ -93,7 +93,7 @@ TEST_CASE("a contact without a place says what is in its way") {
     CHECK_THAT(only_error(problem),
                Contains("goal.contact.obstacle: is 'celing'") && Contains("did you mean 'ceiling'"));
     problem = contact_problem("ceiling", TouchingPart::frame);
-    problem.goal.contact->x_m = 40;
+    test::contact(problem.goal).x_m = 40;
     CHECK_THAT(only_error(problem), Contains("goal.contact") && Contains("no way along x or z leads to the obstacle"));
     problem = contact_problem("ceiling", TouchingPart::frame);
     problem.aero.min_distance_radii = 0.3;
@@ -102,14 +102,14 @@ TEST_CASE("a contact without a place says what is in its way") {
     problem.obstacles.push_back({"ball", Sphere{0.5}, {0, 0, 4}, {}});
     CHECK_THAT(only_error(problem), Contains("not flat"));
     problem = contact_problem("ceiling", TouchingPart::frame);
-    problem.goal.contact->standoff_m = 4.5;
+    test::contact(problem.goal).standoff_m = 4.5;
     CHECK_THAT(only_error(problem), Contains("outside the bounds"));
     problem = contact_problem("ceiling", TouchingPart::frame);
     problem.stops.push_back(tip_goal(0, 3));
     CHECK_THAT(only_error(problem), Contains("one of several goals"));
-    problem = contact_problem("ceiling", TouchingPart::frame);
-    problem.goal.configuration.emplace().x_m = 0;
-    CHECK_THAT(only_error(problem), Contains("exactly one of"));
+    problem.goal = Goal{};
+    problem.stops.clear();
+    CHECK_THAT(only_error(problem), Contains("goal.configuration: is free in every coordinate"));
     problem = contact_problem("ceiling", TouchingPart::frame);
     problem.targets = {std::exchange(problem.goal, {})};
     CHECK_THAT(only_error(problem), Contains("goal.in_any_order[0]") && Contains("expected contact for the only goal"));

@@ -51,23 +51,22 @@ class ProblemMaker {
         if (coin()) {
             test::limit_arm(problem.robot, -3 - uniform(), 3 + uniform());
         }
-        problem.goal.end_effector->direction_tolerance_rad = 3 + 0.1 * uniform();
+        test::end_effector(problem.goal).direction_tolerance_rad = 3 + 0.1 * uniform();
         if (coin()) {
-            problem.goal.end_effector->direction_rad = 7 * uniform();
+            test::end_effector(problem.goal).direction_rad = 7 * uniform();
         }
         if (coin()) {
-            problem.goal.end_effector.reset();
-            problem.goal.configuration.emplace();
-            problem.goal.configuration->arm_rad = 20 * uniform();
-            problem.goal.configuration->tolerance_rad = uniform();
+            auto& pose = problem.goal.kind.emplace<ConfigurationGoal>();
+            pose.arm_rad = 20 * uniform();
+            pose.tolerance_rad = uniform();
             test::limit_arm(problem.robot, 0, 0);
             problem.robot.arm.is_limited = false;
         }
-        if (Goal& goal = problem.goal; goal.end_effector && coin()) {
-            goal.end_effector->tolerance_x_m = 0.1 + uniform();
-        } else if (goal.configuration && coin()) {
-            goal.configuration->z_m = 2 + uniform();
-            goal.configuration->tolerance_z_m = 0.1 + uniform();
+        if (auto* tip = std::get_if<EndEffectorGoal>(&problem.goal.kind); tip != nullptr && coin()) {
+            tip->tolerance_x_m = 0.1 + uniform();
+        } else if (auto* pose = std::get_if<ConfigurationGoal>(&problem.goal.kind); pose != nullptr && coin()) {
+            pose->z_m = 2 + uniform();
+            pose->tolerance_z_m = 0.1 + uniform();
         }
         if (coin()) {
             Goal other = problem.goal;
@@ -103,7 +102,7 @@ class ProblemMaker {
         }
         problem.aero.max_factor = 1 + uniform();
         if (coin()) {
-            RobotUncertainty& own = problem.robot.uncertainty.emplace();
+            Uncertainty& own = problem.robot.uncertainty.emplace();
             own.mass_scale = Spread::of_sd(0.1 * uniform());
             own.pitch_bias_rad = coin() ? Spread::of_sd(0.05 * uniform()) : Spread::over(-0.1 * uniform(), 0.1);
             own.delay_s = coin() ? Spread() : Spread::of_factor(uniform(), 1 + uniform());

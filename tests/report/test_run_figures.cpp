@@ -49,17 +49,17 @@ TEST_CASE("goals in turn have their numbers and tolerances in the picture, a sin
     };
     const auto disc = region_of(snapshots());
     for (const PlanePoint& corner : disc.at(0)) {
-        CHECK(std::hypot(corner.x_m - single.end_effector->x_m, corner.z_m - single.end_effector->z_m) ==
-              Approx(single.end_effector->tolerance_m));
+        CHECK(std::hypot(corner.x_m - test::end_effector(single).x_m, corner.z_m - test::end_effector(single).z_m) ==
+              Approx(test::end_effector(single).tolerance_m));
     }
     CHECK(snapshots().points.at(0).labels.empty());
 
     RunRecord tour = record();
     Goal first = single;
-    first.end_effector->x_m = -1;
-    first.end_effector->z_m = 3.5;
-    first.end_effector->tolerance_x_m = 0.3;
-    first.end_effector->tolerance_z_m = 0.1;
+    test::end_effector(first).x_m = -1;
+    test::end_effector(first).z_m = 3.5;
+    test::end_effector(first).tolerance_x_m = 0.3;
+    test::end_effector(first).tolerance_z_m = 0.1;
     tour.problem.stops = {first};
     const FieldFigure figure = snapshot_figure(tour, *make_flight_model(record().problem));
     CHECK(figure.points.at(0).labels == std::vector<std::string>{"goal 1", "goal 2"});

@@ -26,7 +26,7 @@ struct Fixture {
 
 Problem with_configuration_goal() {
     Problem problem = test::with_place(2, 3);
-    problem.goal.configuration->tolerance_m = 0.5;
+    test::configuration(problem.goal).tolerance_m = 0.5;
     return problem;
 }
 
@@ -80,7 +80,7 @@ TEST_CASE("an arm that does not move is at its angle in every sample, and distan
 TEST_CASE("an arm that turns more than once reaches a direction by the shorter turn") {
     Problem problem = test::ceiling_problem();
     test::limit_arm(problem.robot, -200 * pi / 180, 300 * pi / 180);
-    problem.goal.end_effector->direction_rad = 250 * pi / 180;
+    test::end_effector(problem.goal).direction_rad = 250 * pi / 180;
     const Fixture f(problem);
     const double once = 250 * pi / 180, before = -110 * pi / 180;
     CHECK(f.space.moved_into_goal({0, 2, 280 * pi / 180}, 0)[plane::arm] == Approx(once));
@@ -99,8 +99,8 @@ TEST_CASE("an arm that turns more than once reaches a direction by the shorter t
 
 TEST_CASE("the wanted direction of the arm is taken on to within the tolerance") {
     Problem problem = test::ceiling_problem();
-    problem.goal.end_effector->direction_rad = -pi / 2;
-    problem.goal.end_effector->direction_tolerance_rad = 0.2;
+    test::end_effector(problem.goal).direction_rad = -pi / 2;
+    test::end_effector(problem.goal).direction_tolerance_rad = 0.2;
     const Fixture f(problem);
     CHECK(f.space.moved_into_goal({0, 2, 0}, 0)[plane::arm] == Approx(-pi / 2));
     CHECK(f.space.moved_into_goal({0, 2, 0}, 1)[plane::arm] == Approx(-pi / 2 + 0.2));
@@ -116,7 +116,7 @@ Goal random_goal(planning::Random& random) {
     };
     Goal goal;
     if (random.chance(0.5)) {
-        EndEffectorGoal& tip = goal.end_effector.emplace();
+        EndEffectorGoal& tip = goal.kind.emplace<EndEffectorGoal>();
         tip.x_m = random.uniform(-3, 3);
         tip.z_m = random.uniform(2, 4);
         tip.tolerance_m = random.uniform(0.01, 0.5);
@@ -125,7 +125,7 @@ Goal random_goal(planning::Random& random) {
         tip.direction_rad = some(-pi, pi);
         return goal;
     }
-    ConfigurationGoal& pose = goal.configuration.emplace();
+    ConfigurationGoal& pose = goal.kind.emplace<ConfigurationGoal>();
     pose.x_m = some(-3, 3);
     pose.z_m = some(2, 4);
     pose.arm_rad = pose.x_m || pose.z_m ? some(-pi, pi) : random.uniform(-pi, pi);
@@ -147,13 +147,12 @@ bool lies_within(const Goal& goal, const Configuration& c, double share) {
         return std::abs(dx) <= share * to.tolerance_x_m.value_or(to.tolerance_m) &&
                std::abs(dz) <= share * to.tolerance_z_m.value_or(to.tolerance_m);
     };
-    if (goal.end_effector) {
-        const EndEffectorGoal& tip = *goal.end_effector;
-        return is_within(tip, c[plane::x] + 1.2 * std::cos(c[plane::arm]) - tip.x_m,
-                         c[plane::z] - 1.2 * std::sin(c[plane::arm]) - tip.z_m,
-                         c[plane::arm] - tip.direction_rad.value_or(c[plane::arm]), tip.direction_tolerance_rad);
+    if (const auto* tip = std::get_if<EndEffectorGoal>(&goal.kind)) {
+        return is_within(*tip, c[plane::x] + 1.2 * std::cos(c[plane::arm]) - tip->x_m,
+                         c[plane::z] - 1.2 * std::sin(c[plane::arm]) - tip->z_m,
+                         c[plane::arm] - tip->direction_rad.value_or(c[plane::arm]), tip->direction_tolerance_rad);
     }
-    const ConfigurationGoal& pose = *goal.configuration;
+    const ConfigurationGoal& pose = test::configuration(goal);
     return is_within(pose, c[plane::x] - pose.x_m.value_or(c[plane::x]), c[plane::z] - pose.z_m.value_or(c[plane::z]),
                      c[plane::arm] - pose.arm_rad.value_or(c[plane::arm]), pose.tolerance_rad);
 }
@@ -211,9 +210,8 @@ TEST_CASE("samples, distances and verdicts agree on where a goal is, whatever it
 TEST_CASE("samples of several goals come to all of them") {
     Problem problem = test::ceiling_problem();
     Goal left = problem.goal;
-    left.end_effector->x_m = -3;
+    test::end_effector(left).x_m = -3;
     problem.goal.any_of = {problem.goal, left};
-    problem.goal.end_effector.reset();
     const Fixture f(problem);
     planning::Random random(5);
     int at_left = 0;
@@ -233,7 +231,7 @@ TEST_CASE("no motion is cheaper than the least that is said of it, however it is
     for (const Objective objective : all_objectives) {
         CAPTURE(name_of(objective));
         Problem turned = with_configuration_goal();
-        turned.goal.configuration->arm_rad = 1;
+        test::configuration(turned.goal).arm_rad = 1;
         for (Problem problem : {test::ceiling_problem(), with_configuration_goal(), turned}) {
             problem.planner.objective = objective;
             const Fixture f(problem);

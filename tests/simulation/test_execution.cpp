@@ -141,7 +141,7 @@ TEST_CASE("goals on the way count as met only when the reference stands at them 
     const Problem problem = test::with_place(-2, 2);  // from (-4, 2)
     const auto model = make_flight_model(problem);
     Goal stop = problem.goal;
-    stop.configuration->x_m = -3;
+    test::configuration(stop).x_m = -3;
     stop.hold_s = 2;
     const double down = problem.start.arm_rad;
     const ReferencePoint start = at_rest({-4, 2, down}), middle = at_rest({-3, 2, down}), end = at_rest({-2, 2, down});
@@ -186,7 +186,7 @@ TEST_CASE("goals on the way count as met only when the reference stands at them 
 
 TEST_CASE("a goal is met only by a vehicle that stays within its tolerance for the last second") {
     Problem problem = test::with_place(-3, 2);  // from (-4, 2)
-    problem.goal.configuration->tolerance_m = 0.05;
+    test::configuration(problem.goal).tolerance_m = 0.05;
     const std::vector<ReferenceKnot> quick = from_start(problem, {-3, 2, problem.start.arm_rad}, 200);
     const auto error_m = [](const FlightRow& row) { return std::hypot(row.q[0] + 3, row.q[1] - 2); };
     problem.goal.hold_s = 0.5;

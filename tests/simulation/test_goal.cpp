@@ -23,7 +23,7 @@ TEST_CASE_METHOD(Fixture, "goal errors of an end effector and of a configuration
     Goal goal = tip_goal(1, 2);
     const PlanarPose forward{-0.2, 2.3, 0, 0};  // tip at (1.0, 2.3)
     CHECK(goal_error(goal, plant, forward).distance_m == Approx(0.3));
-    goal.end_effector->direction_rad = 0.2;
+    test::end_effector(goal).direction_rad = 0.2;
     CHECK(goal_error(goal, plant, forward).angle_rad == Approx(0.2));
     const PlanarPose turned{-0.2, 2.3, 0, 2 * 3.14159265358979323846};
     CHECK(goal_error(goal, plant, turned).angle_rad == Approx(0.2));
@@ -31,9 +31,9 @@ TEST_CASE_METHOD(Fixture, "goal errors of an end effector and of a configuration
     Goal configured = configuration_goal({}, 2);
     CHECK(goal_error(configured, plant, forward).distance_m == Approx(0.3));
     CHECK(goal_error(configured, plant, forward).angle_rad == 0);
-    configured.configuration->x_m = 0.2;
+    test::configuration(configured).x_m = 0.2;
     CHECK(goal_error(configured, plant, forward).distance_m == Approx(0.5));
-    configured.configuration->arm_rad = -0.4;
+    test::configuration(configured).arm_rad = -0.4;
     CHECK(goal_error(configured, plant, turned).angle_rad == Approx(0.4));
     CHECK_FALSE(is_met(goal_error(configured, plant, forward)));
 }
@@ -43,16 +43,16 @@ TEST_CASE_METHOD(Fixture, "tolerances of x and z by themselves make a rectangle 
     const auto share_at = [&](double x_m, double z_m) { return goal_error(goal, plant, {x_m, z_m, 0, 0}).used_share; };
     CHECK(share_at(0.06, 2.08) == Approx(1));
     CHECK(share_at(0.09, 2.09) == Approx(0.9 * std::sqrt(2.0)));
-    goal.configuration->tolerance_x_m = 0.5;
+    test::configuration(goal).tolerance_x_m = 0.5;
     CHECK(share_at(0.25, 2.09) == Approx(0.9));  // z keeps tolerance_m
     CHECK(share_at(-0.45, 1.95) == Approx(0.9));
     CHECK(share_at(0, 2.2) == Approx(2));
-    goal.configuration->tolerance_z_m = 0.05;
+    test::configuration(goal).tolerance_z_m = 0.05;
     CHECK(share_at(0.25, 2.04) == Approx(0.8));
     CHECK(goal_error(goal, plant, {0.3, 2.4, 0, 0}).distance_m == Approx(0.5));  // Euclidean, whatever the tolerances
 
     Goal tip = tip_goal(1.2, 2);
-    tip.end_effector->tolerance_z_m = 0.4;
+    test::end_effector(tip).tolerance_z_m = 0.4;
     CHECK(goal_error(tip, plant, {0.05, 2.1, 0, 0}).used_share == Approx(0.5));  // tip at (1.25, 2.1)
 }
 
@@ -60,7 +60,7 @@ TEST_CASE_METHOD(Fixture, "of several goals the nearest by its own tolerances co
     Goal strict = configuration_goal(0, {});  // within 0.1 m
     strict.hold_s = 3;
     Goal loose = configuration_goal(2, {});
-    loose.configuration->tolerance_m = 1;
+    test::configuration(loose).tolerance_m = 1;
     loose.hold_s = 7;
     Goal goal;
     goal.any_of = {strict, loose};
@@ -85,8 +85,8 @@ TEST_CASE_METHOD(Fixture, "within the motion that a goal leaves it stays met, an
         Goal goal;
         if (coin()) {
             goal = tip_goal(1.2, 0);
-            goal.end_effector->direction_rad = coin() ? std::optional(0.0) : std::nullopt;
-            goal.end_effector->tolerance_x_m = coin() ? std::optional(0.2) : std::nullopt;
+            test::end_effector(goal).direction_rad = coin() ? std::optional(0.0) : std::nullopt;
+            test::end_effector(goal).tolerance_x_m = coin() ? std::optional(0.2) : std::nullopt;
         } else {
             goal = configuration_goal(0, 0, coin() ? std::optional(0.0) : std::nullopt);
         }

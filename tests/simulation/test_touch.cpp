@@ -30,7 +30,7 @@ Problem touching_problem(TouchingPart part, double force_n) {
     problem.robot.body = {{Box{{1.04, 1.04, 0.22}}, {0, 0, 0}}};  // a frame that reaches 5 cm over the rotors
     problem.obstacles.push_back(box("wall", {0.3, 8, 5}, {4.5, 0, 2.5}));
     problem.goal = Goal{};
-    ContactGoal& contact = problem.goal.contact.emplace();
+    ContactGoal& contact = problem.goal.kind.emplace<ContactGoal>();
     contact.obstacle = part == TouchingPart::frame ? "ceiling" : "wall";
     contact.part = part;
     contact.force_n = force_n;
@@ -46,8 +46,8 @@ Execution touch_from_hover(const Problem& problem, const FlightWorld& in = {}, b
     const auto model = make_flight_model(problem);
     const Goal& place = problem.goal.any_of.front();
     Configuration at{0, 0, quarter_turn};
-    if (place.end_effector) {
-        at[plane::arm] = *place.end_effector->direction_rad;
+    if (part_of(place) == GoalPart::end_effector) {
+        at[plane::arm] = *test::end_effector(place).direction_rad;
     }
     at = placed_at(place, model->tick().plant, at, 0, 0);
     const std::vector<ReferenceKnot> knots{{0, at_rest(at)}};
@@ -141,7 +141,8 @@ TEST_CASE("a touch through the map of a planner ends as the one with effects eva
         const auto model = make_flight_model(problem);
         const auto map = model->make_map(problem.bounds);
         const Goal& place = problem.goal.any_of.front();
-        Configuration at{0, 0, place.end_effector ? *place.end_effector->direction_rad : quarter_turn};
+        Configuration at{
+            0, 0, part_of(place) == GoalPart::end_effector ? *test::end_effector(place).direction_rad : quarter_turn};
         at = placed_at(place, model->tick().plant, at, 0, 0);
         // Both begin as the hover before has left the vehicle.
         const Execution direct = touch_from_hover(problem);

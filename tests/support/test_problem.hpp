@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "downwash/problems/problem.hpp"
 #include "test_robot.hpp"
@@ -17,7 +18,7 @@ inline Obstacle box(std::string name, const Vector3& size_m, const Vector3& cent
 /// A goal for the tip of the arm.
 inline Goal tip_goal(double x_m, double z_m) {
     Goal goal;
-    goal.end_effector = EndEffectorGoal{.x_m = x_m, .z_m = z_m, .direction_rad = {}};
+    goal.kind = EndEffectorGoal{.x_m = x_m, .z_m = z_m, .direction_rad = {}};
     return goal;
 }
 
@@ -25,8 +26,22 @@ inline Goal tip_goal(double x_m, double z_m) {
 inline Goal configuration_goal(std::optional<double> x_m, std::optional<double> z_m,
                                std::optional<double> arm_rad = {}) {
     Goal goal;
-    goal.configuration = ConfigurationGoal{.x_m = x_m, .z_m = z_m, .arm_rad = arm_rad};
+    goal.kind = ConfigurationGoal{.x_m = x_m, .z_m = z_m, .arm_rad = arm_rad};
     return goal;
+}
+
+/// What a goal of a known kind asks for: auto& as the goal is const or not.
+template <class AnyGoal>
+auto& end_effector(AnyGoal& goal) {
+    return std::get<EndEffectorGoal>(goal.kind);
+}
+template <class AnyGoal>
+auto& configuration(AnyGoal& goal) {
+    return std::get<ConfigurationGoal>(goal.kind);
+}
+template <class AnyGoal>
+auto& contact(AnyGoal& goal) {
+    return std::get<ContactGoal>(goal.kind);
 }
 
 /// A ceiling over the ground and nothing between: the tip of the arm has to get to a point below the ceiling.
@@ -62,7 +77,7 @@ inline Problem cluttered_problem() {
 
 /// How far the tip of the arm of a level vehicle is from the end-effector goal of a problem.
 inline double tip_error_m(const Problem& problem, const Configuration& at) {
-    const EndEffectorGoal& goal = *problem.goal.end_effector;
+    const EndEffectorGoal& goal = test::end_effector(problem.goal);
     const double arm_m = problem.robot.arm.length_m;
     return std::hypot(at[plane::x] + arm_m * std::cos(at[plane::arm]) - goal.x_m,
                       at[plane::z] - arm_m * std::sin(at[plane::arm]) - goal.z_m);

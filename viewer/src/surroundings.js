@@ -52,6 +52,13 @@ export function draw_bounds({x_m, z_m}) {
 
 /** Where a goal is, free coordinates drawn over the whole extent; null where it has no tolerance. */
 export function goal_region(goal, bounds) {
+    if (goal.outline) {
+        const corners = goal.outline.flat(), x = corners.map(([x_m]) => x_m), z = corners.map(([, z_m]) => z_m);
+        const [low_x, high_x, low_z, high_z] = [Math.min(...x), Math.max(...x), Math.min(...z), Math.max(...z)];
+        return {
+            x_m: (low_x + high_x) / 2, z_m: (low_z + high_z) / 2,
+            half_x: (high_x - low_x) / 2, half_z: (high_z - low_z) / 2, shape: "outline", outline: goal.outline};
+    }
     const is_free_x = !Number.isFinite(goal.x_m), is_free_z = !Number.isFinite(goal.z_m);
     const half_x = is_free_x ? (bounds.x_m[1] - bounds.x_m[0]) / 2 : goal.tolerance_x_m;
     const half_z = is_free_z ? (bounds.z_m[1] - bounds.z_m[0]) / 2 : goal.tolerance_z_m;
@@ -61,7 +68,10 @@ export function goal_region(goal, bounds) {
     return {x_m, z_m, half_x, half_z, shape: is_free_x || is_free_z ? "rectangle" : shape};
 }
 
-function draw_region({x_m, z_m, half_x, half_z, shape}) {
+function draw_region({x_m, z_m, half_x, half_z, shape, outline}) {
+    if (shape === "outline") {
+        return s("path", {class: "goal-region", "fill-rule": "evenodd", d: rings(outline)});
+    }
     if (!(half_x > 0) || !(half_z > 0)) {
         return s("circle", {class: "goal-region", cx: x_m, cy: z_m, r: 0.08});
     }
