@@ -127,10 +127,10 @@ void add_surface(Rows& rows, const std::string& path, const std::string& descrip
 
 void add_map(Rows& rows) {
     rows.push_back(parameters::file<Problem>(
-        "aero.map", "K on a grid of rotor positions, .vti or CSV, in place of the models; null: none",
+        "aero.map", "K on a grid of rotor positions, a CSV file, in place of the models; null: none",
         [](auto& p) -> auto& { return p.aero.map_file; },
         [](Problem& p, std::size_t, const std::string& name) {
-            p.aero.map = std::make_shared<const FactorGrid>(read_factor_grid(name, {.plane = p.plane}));
+            p.aero.map = std::make_shared<const FactorGrid>(read_factor_grid(name, p.plane));
         },
         [](const Problem& p, std::size_t) { return sha256_hex(vti_text(*p.aero.map)); }));
 }
