@@ -127,6 +127,8 @@ struct Parameter : ParameterInfo {
     Parameter below(double high) && { return range.high = high, range.excludes_high = true, std::move(*this); }
     /// Allows `high` and lesser values.
     Parameter at_most(double high) && { return range.high = high, std::move(*this); }
+    /// Allows values from `low` to `high`, both included.
+    Parameter between(double low, double high) && { return range.low = low, range.high = high, std::move(*this); }
     /// Every file must contain the key.
     Parameter is_required() && { return required = true, std::move(*this); }
     /// See ParameterInfo::former_name.

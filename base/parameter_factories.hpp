@@ -1,27 +1,53 @@
 #pragma once
 
-// How the rows of a parameter table are written. A member is named by a generic lambda that returns a reference to it,
-// [](auto& robot) -> auto& { return robot.arm.length_m; }, or, in a list, [](auto& problem, std::size_t i) -> auto&.
+// How the rows of a parameter table are written. A member is named by a pointer to it (&Robot::name), by in() and
+// in_each(), or by a generic lambda that returns a reference to it, [](auto& model, std::size_t i) -> auto&.
 
 #include <algorithm>
+#include <functional>
+#include <initializer_list>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "downwash/base/parameter.hpp"
 
 namespace downwash::parameters {
 
-/// The member that a lambda names.
+/// The member of a model that a pointer or a lambda names.
 template <class Model, class Member>
 decltype(auto) at(const Member& member, Model& model, std::size_t index) {
     if constexpr (std::is_invocable_v<const Member&, Model&, std::size_t>) {
         return member(model, index);
     } else {
-        return member(model);
+        return std::invoke(member, model);
     }
 }
 
-/// The type of a member that a lambda names.
+/// Names a member of a part: in(&Robot::arm, &ArmParameters::length_m). What names the part may itself be in(),
+/// in_each() or a lambda.
+template <class Part, class Member>
+auto in(Part part, Member member) {
+    return [ part, member ](auto& model, std::size_t i) -> auto& {
+        return std::invoke(member, at(part, model, i));
+    };
+}
+
+/// Names a member of a list's element: in_each(&Campaign::expect, &CampaignExpectation::variant).
+template <class List, class Member>
+auto in_each(List list, Member member) {
+    return [ list, member ](auto& model, std::size_t i) -> auto& {
+        return std::invoke(member, at(list, model, i)[i]);
+    };
+}
+
+/// Adds rows to a table.
+template <class Model>
+void append(std::vector<Parameter<Model>>& rows, std::initializer_list<Parameter<Model>> more) {
+    rows.insert(rows.end(), more);
+}
+
+/// The type of a member that a pointer or a lambda names.
 template <class Model, class Member>
 using MemberType = std::remove_cvref_t<decltype(at(std::declval<const Member&>(), std::declval<Model&>(), 0))>;
 
@@ -121,6 +147,16 @@ Parameter<Model> choices(std::string_view path, std::string_view description,
     auto parameter = member_row<Model, std::vector<std::string>>(ParameterKind::choices, path, description, member);
     parameter.names = names;
     return parameter;
+}
+
+/// The values of an enumeration with what name_of() calls them.
+template <class Values>
+auto named(const Values& values) {
+    std::vector<std::pair<typename Values::value_type, std::string_view>> named;
+    for (const auto value : values) {
+        named.emplace_back(value, name_of(value));
+    }
+    return named;
 }
 
 /// A list of enumerations whose values have names; the vector may be optional.

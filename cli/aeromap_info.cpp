@@ -119,7 +119,7 @@ ExitCode run(const InfoArguments& given) {
 void add_aeromap_info(Command aeromap, Action& action) {
     auto [command, given] =
         add_command(aeromap, action, "info", "Show what a grid file holds and how it was made", run);
-    command.add_option("FILE", given.file, ".vti or CSV file of factors").required();
+    command.add_option("FILE", given.file, "CSV file of factors").required();
     add_json(command, given.as_json);
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 Json variants_of(const AlgorithmInfo& algorithm) {
     auto names = Json::array();
-    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
+    for (const Variant variant : all_variants) {
         if (algorithm.plans_for(variant)) {
             names.push_back(name_of(variant));
         }

@@ -45,8 +45,6 @@ macro(downwash_component NAME WHAT)
 endmacro()
 
 list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # the package brings its own finder
-downwash_component(VTK "grids of thrust factors in VTK files"
-  FINDS pugixml ZLIB DEBIAN libpugixml-dev zlib1g-dev)
 downwash_component(JUDGE "the judge of plans"
   FINDS fcl DEBIAN libfcl-dev)
 downwash_component(FITTING "fits of surface-effect models to measurements"
@@ -58,5 +56,5 @@ downwash_component(REPORT "pictures and pages of runs"
 downwash_component(CAMPAIGNS "campaigns and their reports"
   FINDS fmt SQLite3 DEBIAN libfmt-dev libsqlite3-dev)
 downwash_component(CLI "the program downwash, its documentation and the tests"
-  NEEDS VTK JUDGE FITTING EXPORTS REPORT CAMPAIGNS
+  NEEDS JUDGE FITTING EXPORTS REPORT CAMPAIGNS
   FINDS CLI11 fmt DEBIAN libcli11-dev libfmt-dev)

@@ -3,7 +3,7 @@
 #include "downwash/base/files.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/grids/grid_formats.hpp"
+#include "downwash/grids/provenance_line.hpp"
 
 namespace downwash {
 namespace {
@@ -49,22 +49,9 @@ std::pair<std::string, std::string> provenance_entry(std::string_view line) {
     return {std::string(key), std::string(trimmed(line.substr(colon + 1)))};
 }
 
-FactorGrid parse_factor_grid(std::string_view bytes, const std::string& name, const GridReading& reading) {
-    const bool is_xml = bytes.substr(0, bytes.find_first_not_of("\xef\xbb\xbf \t\r\n") + 1).ends_with('<');
-    if (!is_xml) {
-        return parse_grid_csv(bytes, name, reading);
-    }
-#ifdef DOWNWASH_HAS_VTK
-    return parse_vti(bytes, name, reading);
-#else
-    throw_input_error(name +
-                      " is XML: expected CSV, as this build of Downwash has no reader of VTK files (pugixml, zlib)");
-#endif
-}
-
-FactorGrid read_factor_grid(const std::filesystem::path& file, const GridReading& reading) {
+FactorGrid read_factor_grid(const std::filesystem::path& file, const PlaneOfMotion& plane) {
     return parse_factor_grid(naming(file, [&] { return read_whole_file(file, max_grid_file_bytes); }), file.string(),
-                             reading);
+                             plane);
 }
 
 void require_grid_writable(const std::filesystem::path& file) {

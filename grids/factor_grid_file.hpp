@@ -10,23 +10,18 @@
 
 namespace downwash {
 
-/// What the file of a grid does not contain.
-struct GridReading {
-    PlaneOfMotion plane;           ///< of the plane coordinates x_m, z_m in a CSV file without a frame of its own
-    std::string array = "factor";  ///< the array or column that holds K
-};
-
-/// Reads a grid of thrust ratios from VTK ImageData (a text that begins with '<') or CSV; docs/grids.md describes both.
-/// A build without the component VTK reads CSV only.
-/// @throws InputError with file, line and column (or byte), what was found and what was expected
+/// Reads a grid of thrust ratios from CSV; docs/grids.md describes the format.
+/// @param plane of the coordinates x_m, z_m in a file that names no frame of its own
+/// @throws InputError with file, line and column, what was found and what was expected
 [[nodiscard]] DOWNWASH_EXPORT FactorGrid read_factor_grid(const std::filesystem::path& file,
-                                                          const GridReading& reading = {});
+                                                          const PlaneOfMotion& plane = {});
 
-/// The same from the bytes of a file. @param name of the file in messages
+/// Reads a grid from the bytes of a CSV file. @param name of the file in messages
 [[nodiscard]] DOWNWASH_EXPORT FactorGrid parse_factor_grid(std::string_view bytes, const std::string& name,
-                                                           const GridReading& reading = {});
+                                                           const PlaneOfMotion& plane = {});
 
-/// Writes a grid as VTK ImageData (.vti) or CSV (.csv), whole or not at all. Reading it gives the same grid to the bit.
+/// Writes a grid as VTK ImageData (.vti) or CSV (.csv), whole or not at all. Reading the CSV gives the same grid to the
+/// bit.
 /// @throws InputError if the name has another ending or the file cannot be written
 DOWNWASH_EXPORT void write_factor_grid(const std::filesystem::path& file, const FactorGrid& grid);
 

@@ -7,14 +7,14 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/line_errors.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/grids/grid_formats.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
+#include "downwash/grids/provenance_line.hpp"
 
 // Comment lines carry the frame and the provenance; then a line of column names and a row a node, in any order.
 
 namespace downwash {
 namespace {
 
-/// Larger grids belong into .vti files.
 constexpr std::size_t max_rows = max_grid_nodes;
 constexpr std::size_t max_columns = 256;
 /// How far a coordinate may be off its node, in steps.
@@ -34,6 +34,25 @@ struct GridCsv {
     [[nodiscard]] bool has(std::size_t column) const { return !columns[column].empty(); }
 };
 
+constexpr std::string_view xml_remedy =
+    "VTK's XML is written by Downwash, not read: expected CSV (`downwash aeromap build PROBLEM -o FILE.csv`, or in "
+    "ParaView: File, Save Data, as CSV with 17 digits)";
+
+/// The index of a column's name, also of those by which ParaView saves the coordinates of points; past the names if it
+/// is none of ours.
+std::size_t role_of(std::string_view name) {
+    if (name.size() > 1 && name.starts_with('"') && name.ends_with('"')) {
+        name = name.substr(1, name.size() - 2);
+    }
+    for (const auto& [theirs, role] :
+         {std::pair{"Points:0", Column::x}, std::pair{"Points:1", y}, std::pair{"Points:2", z}}) {
+        if (name == theirs) {
+            return role;
+        }
+    }
+    return static_cast<std::size_t>(std::find(column_names.begin(), column_names.end(), name) - column_names.begin());
+}
+
 std::string text_number(std::string_view cell) {
     return "'" + excerpt(cell) + "'";
 }
@@ -41,11 +60,7 @@ std::string text_number(std::string_view cell) {
 /// Reads lines into columns.
 class CsvReader {
  public:
-    CsvReader(std::string_view text, LineErrors& errors, std::string_view factor_column)
-        : line_(text), errors_(errors) {
-        names_ = column_names;
-        names_[first_field] = factor_column;
-    }
+    CsvReader(std::string_view text, LineErrors& errors) : line_(text), errors_(errors) {}
 
     GridCsv read() {
         while (line_.next()) {
@@ -105,10 +120,13 @@ class CsvReader {
     }
 
     void read_header() {
+        if (line_.text().starts_with('<')) {
+            errors_.add(line_.number(), 1, std::string(xml_remedy));
+            return;
+        }
         line_.for_each_cell([&](std::string_view cell, std::size_t column) {
-            const auto* name = std::find(names_.begin(), names_.end(), cell);
-            const auto role = static_cast<std::size_t>(name - names_.begin());
-            if (role < names_.size() && std::find(roles_.begin(), roles_.end(), role) != roles_.end()) {
+            const std::size_t role = role_of(cell);
+            if (role < column_names.size() && std::find(roles_.begin(), roles_.end(), role) != roles_.end()) {
                 errors_.add(line_.number(), column, "column " + text_number(cell) + " occurs twice");
             }
             roles_.push_back(role);
@@ -119,7 +137,7 @@ class CsvReader {
         for (const std::size_t needed : {std::size_t{Column::x}, std::size_t{Column::z}, std::size_t{first_field}}) {
             if (!has(needed)) {
                 errors_.add(line_.number(), 1,
-                            "column " + std::string(names_[needed]) + " is missing in '" + excerpt(line_.text()) +
+                            "column " + std::string(column_names[needed]) + " is missing in '" + excerpt(line_.text()) +
                                 "': expected x_m,z_m,factor or x_m,y_m,z_m,factor, separated by commas");
             }
         }
@@ -134,7 +152,7 @@ class CsvReader {
     void read_row() {
         std::size_t index = 0;
         line_.for_each_cell([&](std::string_view cell, std::size_t column) {
-            if (index < roles_.size() && roles_[index] < names_.size()) {
+            if (index < roles_.size() && roles_[index] < column_names.size()) {
                 read_cell(cell, column, roles_[index]);
             }
             ++index;
@@ -155,10 +173,10 @@ class CsvReader {
         const auto number = parse_number<double>(cell);
         const bool is_coordinate = role < first_field;
         const double min = is_coordinate ? -1e6 : 0;
-        const double max = is_coordinate ? 1e6 : (names_[role] == "flyable" ? 1 : 100);
+        const double max = is_coordinate ? 1e6 : (column_names[role] == "flyable" ? 1 : 100);
         if (!number || *number < min || *number > max) {
             errors_.add(line_.number(), column,
-                        std::string(names_[role]) + " is " + text_number(cell) + ": expected a number from " +
+                        std::string(column_names[role]) + " is " + text_number(cell) + ": expected a number from " +
                             to_text(min) + " to " + to_text(max));
         }
         csv_.columns[role].push_back(number.value_or(0));
@@ -166,7 +184,6 @@ class CsvReader {
 
     CsvLines line_;
     LineErrors& errors_;
-    std::array<std::string_view, column_names.size()> names_;
     std::vector<std::size_t> roles_;  ///< of each column; past the names for columns that are not ours
     GridCsv csv_;
 };
@@ -298,13 +315,13 @@ class NodeFinder {
 
 }  // namespace
 
-FactorGrid parse_grid_csv(std::string_view bytes, const std::string& name, const GridReading& reading) {
+FactorGrid parse_factor_grid(std::string_view bytes, const std::string& name, const PlaneOfMotion& plane) {
     LineErrors errors(name);
-    GridCsv csv = CsvReader(bytes, errors, reading.array).read();
+    GridCsv csv = CsvReader(bytes, errors).read();
     FactorGridParts parts;
     NodeFinder(csv, errors).fill(parts);
     parts.provenance = std::move(csv.provenance);
-    const PlaneOfMotion otherwise = csv.has(y) ? PlaneOfMotion() : reading.plane;
+    const PlaneOfMotion otherwise = csv.has(y) ? PlaneOfMotion() : plane;
     parts.frame = PlaneOfMotion(csv.frame_origin_m.value_or(otherwise.origin_m()),
                                 csv.frame_heading_rad.value_or(otherwise.heading_rad()));
     try {

@@ -2,7 +2,8 @@
 #include <charconv>
 
 #include "downwash/base/text.hpp"
-#include "downwash/grids/grid_formats.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
+#include "downwash/grids/provenance_line.hpp"
 
 namespace downwash {
 namespace {

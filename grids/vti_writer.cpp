@@ -7,7 +7,8 @@
 #include "downwash/base/base64.hpp"
 #include "downwash/base/byte_order.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/grids/grid_formats.hpp"
+#include "downwash/grids/factor_grid_file.hpp"
+#include "downwash/grids/provenance_line.hpp"
 
 // VTK's XML format for ImageData: a head in XML that names the arrays, and their numbers behind it in base64.
 

@@ -16,6 +16,12 @@ namespace downwash {
 namespace {
 
 using Rows = std::vector<Parameter<Problem>>;
+using parameters::in;
+
+template <class Member>
+auto aero(Member member) {
+    return in(&Problem::aero, member);
+}
 
 template <class Member>
 Parameter<Problem> number(const std::string& path, std::string_view description, Member member) {
@@ -30,9 +36,11 @@ bool has_no_map(const Problem& p, std::size_t) {
     return !p.aero.map;
 }
 
+/// One side's surface effect in the settings.
+using Side = SurfaceEffect AeroSettings::*;
+
 /// The model's name, and as many rows as all models together have parameters.
-template <class Effect>
-void add_model(Rows& rows, const std::string& path, const std::vector<EffectModelInfo>& models, Effect effect) {
+void add_model(Rows& rows, const std::string& path, const std::vector<EffectModelInfo>& models, Side side) {
     std::vector<std::string_view> names;
     names.reserve(models.size());
     for (const EffectModelInfo& model : models) {
@@ -40,10 +48,10 @@ void add_model(Rows& rows, const std::string& path, const std::vector<EffectMode
     }
     auto model = parameters::row<Problem>(ParameterKind::choice, path + ".model", "the formula");
     model.names = names;
-    model.get = [effect](const Problem& p, std::size_t) { return Value(std::string(info(effect(p).model).name)); };
-    model.set = [effect](Problem& p, std::size_t, const Value& value) {
+    model.get = [side](const Problem& p, std::size_t) { return Value(std::string(info((p.aero.*side).model).name)); };
+    model.set = [side](Problem& p, std::size_t, const Value& value) {
         if (const EffectModelInfo* named = find_effect_model(std::get<std::string>(value))) {
-            effect(p) = named->model;
+            p.aero.*side = named->model;
         }
     };
     rows.push_back(std::move(model));
@@ -52,15 +60,15 @@ void add_model(Rows& rows, const std::string& path, const std::vector<EffectMode
             const ModelParameter& parameter = known.parameters[i];
             auto row = number(
                 path + "." + std::string(parameter.name), parameter.description,
-                [ effect, i ](auto& p) -> auto& { return effect(p).parameters[i]; });
-            row.get = [effect, i, which = known.model, otherwise = parameter.source_value](const Problem& p,
-                                                                                           std::size_t) {
-                return Value(effect(p).model == which ? effect(p).parameters[i] : otherwise);
+                [ side, i ](auto& p) -> auto& { return (p.aero.*side).parameters[i]; });
+            row.get = [side, i, which = known.model, otherwise = parameter.source_value](const Problem& p,
+                                                                                         std::size_t) {
+                return Value((p.aero.*side).model == which ? (p.aero.*side).parameters[i] : otherwise);
             };
             row.range = {parameter.low, parameter.high, parameter.is_open, false};
             rows.push_back(std::move(row).only(
                 "with the model " + std::string(known.name),
-                [effect, which = known.model](const Problem& p, std::size_t) { return effect(p).model == which; }));
+                [side, which = known.model](const Problem& p, std::size_t) { return (p.aero.*side).model == which; }));
         }
     }
 }
@@ -71,66 +79,60 @@ std::shared_ptr<const EffectTable> points_in(const std::string& file, const std:
     return pipe_radii ? std::make_shared<const EffectTable>(points_of_pipe(*table, *pipe_radii)) : table;
 }
 
-template <class Effect>
-void add_table(Rows& rows, const std::string& path, Effect effect) {
-    const auto is_table = [effect](const Problem& p, std::size_t) { return effect(p).model == EffectModel::table; };
+void add_table(Rows& rows, const std::string& path, Side side) {
+    const auto is_table = [side](const Problem& p, std::size_t) { return (p.aero.*side).model == EffectModel::table; };
     rows.push_back(parameters::file<Problem>(
                        path + ".file", "the table, CSV with z_over_r, perhaps d_over_r, and factor",
-                       [effect](auto& p) -> auto& { return effect(p).file; },
-                       [effect](Problem& p, std::size_t, const std::string& name) {
-                           effect(p).table = points_in(name, effect(p).pipe_radii);
+                       in(aero(side), &SurfaceEffect::file),
+                       [side](Problem& p, std::size_t, const std::string& name) {
+                           (p.aero.*side).table = points_in(name, (p.aero.*side).pipe_radii);
                        },
-                       [effect](const Problem& p, std::size_t) { return digest_of(*effect(p).table); })
+                       [side](const Problem& p, std::size_t) { return digest_of(*(p.aero.*side).table); })
                        .only("with the model table", is_table));
     auto pipe = number(
         path + ".pipe_radii",
         "the table was measured with the hub over the axis of a pipe of this radius, in rotor radii, and holds for the "
         "whole disc; null: over a wide, flat surface",
-        [effect](auto& p) -> auto& { return effect(p).pipe_radii; });
-    pipe.set = [effect, keep = pipe.set](Problem& p, std::size_t i, const Value& value) {
+        in(aero(side), &SurfaceEffect::pipe_radii));
+    pipe.set = [side, keep = pipe.set](Problem& p, std::size_t i, const Value& value) {
         keep(p, i, value);
-        if (effect(p).table) {
-            effect(p).table = points_in(effect(p).file, effect(p).pipe_radii);
+        if ((p.aero.*side).table) {
+            (p.aero.*side).table = points_in((p.aero.*side).file, (p.aero.*side).pipe_radii);
         }
     };
-    rows.push_back(std::move(pipe).at_least(0.02).at_most(100).only("with the model table", is_table));
-    rows.push_back(number(
-                       path + ".d_over_r",
-                       "second distance of a table over two; null: the distance to the nearest wall at rotor height",
-                       [effect](auto& p) -> auto& { return effect(p).d_over_r; })
-                       .at_least(0)
-                       .at_most(10000)
+    rows.push_back(std::move(pipe).between(0.02, 100).only("with the model table", is_table));
+    rows.push_back(number(path + ".d_over_r",
+                          "second distance of a table over two; null: the distance to the nearest wall at rotor height",
+                          in(aero(side), &SurfaceEffect::d_over_r))
+                       .between(0, 10000)
                        .only("with the model table", is_table));
 }
 
-/// One side's surface effect; `effect` names it in a Problem.
-template <class Effect, class TiltLossMember>
 void add_surface(Rows& rows, const std::string& path, const std::string& description,
-                 const std::vector<EffectModelInfo>& models, Effect effect, TiltLossMember tilt_loss) {
+                 const std::vector<EffectModelInfo>& models, Side side, double TiltLoss::*tilt_loss) {
     auto surface = parameters::group<Problem>(path, description).or_none().only("without aero.map", has_no_map);
-    surface.resize = [effect](Problem& p, std::size_t, std::size_t count) {
+    surface.resize = [side](Problem& p, std::size_t, std::size_t count) {
         if (count == 0) {
-            effect(p) = EffectModel::none;
+            p.aero.*side = EffectModel::none;
         }
     };
     rows.push_back(std::move(surface));
-    add_model(rows, path, models, effect);
-    add_table(rows, path, effect);
+    add_model(rows, path, models, side);
+    add_table(rows, path, side);
     rows.push_back(
         number(path + ".tilt_loss",
                "how fast the effect fades with the tilt of a rotor: K - 1 is halved where it equals tilt_loss "
                "times the squared sine of the tilt; 0: a tilted rotor counts as level",
-               tilt_loss)
-            .at_least(0)
-            .at_most(100));
+               in(aero(&AeroSettings::tilt_loss), tilt_loss))
+            .between(0, 100));
 }
 
 void add_map(Rows& rows) {
     rows.push_back(parameters::file<Problem>(
-        "aero.map", "K on a grid of rotor positions, .vti or CSV, in place of the models; null: none",
-        [](auto& p) -> auto& { return p.aero.map_file; },
+        "aero.map", "K on a grid of rotor positions, a CSV file, in place of the models; null: none",
+        aero(&AeroSettings::map_file),
         [](Problem& p, std::size_t, const std::string& name) {
-            p.aero.map = std::make_shared<const FactorGrid>(read_factor_grid(name, {.plane = p.plane}));
+            p.aero.map = std::make_shared<const FactorGrid>(read_factor_grid(name, p.plane));
         },
         [](const Problem& p, std::size_t) { return sha256_hex(vti_text(*p.aero.map)); }));
 }
@@ -138,60 +140,45 @@ void add_map(Rows& rows) {
 }  // namespace
 
 void add_aero_rows(Rows& rows) {
-    auto aero = parameters::group<Problem>("aero", "how surfaces act on the rotors").or_none();
-    aero.count = [](const Problem& p, std::size_t) { return std::size_t{p.aero.enabled ? 1U : 0U}; };
-    aero.resize = [](Problem& p, std::size_t, std::size_t count) { p.aero.enabled = count > 0; };
-    rows.push_back(std::move(aero));
+    auto group = parameters::group<Problem>("aero", "how surfaces act on the rotors").or_none();
+    group.count = [](const Problem& p, std::size_t) { return std::size_t{p.aero.enabled ? 1U : 0U}; };
+    group.resize = [](Problem& p, std::size_t, std::size_t count) { p.aero.enabled = count > 0; };
+    rows.push_back(std::move(group));
     add_map(rows);
     std::vector<EffectModelInfo> below(effect_models().begin(), effect_models().end());
     std::vector<EffectModelInfo> above = below;
     std::erase_if(above, [](const EffectModelInfo& model) {  // a fountain rises from the ground only
         return model.model == EffectModel::multirotor_body;
     });
-    add_surface(
-        rows, "aero.ground", "surfaces below a rotor", below, [](auto& p) -> auto& { return p.aero.ground; },
-        [](auto& p) -> auto& { return p.aero.tilt_loss.ground; });
-    add_surface(
-        rows, "aero.ceiling", "surfaces above a rotor", above, [](auto& p) -> auto& { return p.aero.ceiling; },
-        [](auto& p) -> auto& { return p.aero.tilt_loss.ceiling; });
-    rows.push_back(parameters::group<Problem>(
-        "aero.wall",
-        "what walls beside the vehicle do to it, as shares of the thrust; they fade with the gap to the "
-        "nearest rotor's edge"));
-    rows.push_back(number(
-                       "aero.wall.force", "horizontal force where a rotor touches the wall, positive: away from it",
-                       [](auto& p) -> auto& { return p.aero.wall.force; })
-                       .at_least(-0.2)
-                       .at_most(0.2));
-    rows.push_back(number(
-                       "aero.wall.moment",
-                       "pitch moment there, over thrust and rotor radius, positive: the side towards the wall sinks",
-                       [](auto& p) -> auto& { return p.aero.wall.moment; })
-                       .at_least(-0.5)
-                       .at_most(0.5));
-    rows.push_back(number(
-                       "aero.wall.decay_radii", "gap in rotor radii over which both fall to 1/e",
-                       [](auto& p) -> auto& { return p.aero.wall.decay_radii; })
-                       .at_least(0.05)
-                       .at_most(20));
-    rows.push_back(
-        number(
-            "aero.max_factor",
-            "most that a surface may multiply thrust by; a low one hides from plans how a near ceiling pulls",
-            [](auto& p) -> auto& { return p.aero.max_factor; })
-            .at_least(1)
-            .at_most(10)
-            .only("without aero.map", has_no_map));
-    rows.push_back(number(
-                       "aero.min_distance_radii",
-                       "flyable area: least distance of a rotor's disc from obstacles, where models still apply",
-                       [](auto& p) -> auto& { return p.aero.min_distance_radii; })
-                       .at_least(least_distance_radii)
-                       .at_most(100));
-    rows.push_back(number(
-                       "aero.grid_m", "cell size of the map", [](auto& p) -> auto& { return p.aero.grid_m; })
-                       .at_least(0.001)
-                       .at_most(10));
+    add_surface(rows, "aero.ground", "surfaces below a rotor", below, &AeroSettings::ground, &TiltLoss::ground);
+    add_surface(rows, "aero.ceiling", "surfaces above a rotor", above, &AeroSettings::ceiling, &TiltLoss::ceiling);
+    const auto wall = [](auto member) { return in(aero(&AeroSettings::wall), member); };
+    parameters::append(
+        rows,
+        {parameters::group<Problem>(
+             "aero.wall",
+             "what walls beside the vehicle do to it, as shares of the thrust; they fade with the gap to the nearest "
+             "rotor's edge"),
+         number("aero.wall.force", "horizontal force where a rotor touches the wall, positive: away from it",
+                wall(&WallEffect::force))
+             .between(-0.2, 0.2),
+         number("aero.wall.moment",
+                "pitch moment there, over thrust and rotor radius, positive: the side towards the wall sinks",
+                wall(&WallEffect::moment))
+             .between(-0.5, 0.5),
+         number("aero.wall.decay_radii", "gap in rotor radii over which both fall to 1/e",
+                wall(&WallEffect::decay_radii))
+             .between(0.05, 20),
+         number("aero.max_factor",
+                "most that a surface may multiply thrust by; a low one hides from plans how a near ceiling pulls",
+                aero(&AeroSettings::max_factor))
+             .between(1, 10)
+             .only("without aero.map", has_no_map),
+         number("aero.min_distance_radii",
+                "flyable area: least distance of a rotor's disc from obstacles, where models still apply",
+                aero(&AeroSettings::min_distance_radii))
+             .between(least_distance_radii, 100),
+         number("aero.grid_m", "cell size of the map", aero(&AeroSettings::grid_m)).between(0.001, 10)});
 }
 
 }  // namespace downwash

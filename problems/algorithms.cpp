@@ -112,6 +112,14 @@ std::span<const AlgorithmInfo> algorithms() {
     return table;
 }
 
+std::vector<std::string_view> algorithm_names() {
+    std::vector<std::string_view> names;
+    for (const AlgorithmInfo& algorithm : table) {
+        names.push_back(algorithm.name);
+    }
+    return names;
+}
+
 const std::vector<KnownParameter>& known_parameters() {
     static const std::vector<KnownParameter> known = [] {
         std::map<std::string_view, KnownParameter> by_name;

@@ -42,6 +42,9 @@ struct AlgorithmInfo {
 /// Every algorithm that a problem may name.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const AlgorithmInfo> algorithms();
 
+/// Their names, in the same order.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<std::string_view> algorithm_names();
+
 /// A parameter by its name, and the algorithms that have it.
 struct KnownParameter {
     const AlgorithmParameter* parameter;

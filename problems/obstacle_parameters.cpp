@@ -16,6 +16,7 @@ namespace downwash {
 namespace {
 
 using Rows = std::vector<Parameter<Problem>>;
+using parameters::in_each;
 
 std::size_t pieces_of(const Shape& shape) {
     if (const auto* mesh = std::get_if<Mesh>(&shape); mesh && mesh->surface) {
@@ -59,19 +60,15 @@ void read_file_of(Problem& problem, std::size_t index, const std::string& file,
 }
 
 Parameter<Problem> center(const std::string& path, std::string_view description) {
-    return parameters::vector<Problem>(
-               path + ".center_m", description, {"x", "y", "z"},
-               [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].center_world_m; })
-        .at_least(-farthest_m)
-        .at_most(farthest_m);
+    return parameters::vector<Problem>(path + ".center_m", description, {"x", "y", "z"},
+                                       in_each(&Problem::obstacles, &Obstacle::center_world_m))
+        .between(-farthest_m, farthest_m);
 }
 
 Parameter<Problem> orientation(const std::string& path) {
-    return parameters::vector<Problem>(
-               path + ".rpy_deg", "orientation, R = Rz(yaw) Ry(pitch) Rx(roll)", {"roll", "pitch", "yaw"},
-               [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].rpy_rad; })
-        .at_least(-360)
-        .at_most(360);
+    return parameters::vector<Problem>(path + ".rpy_deg", "orientation, R = Rz(yaw) Ry(pitch) Rx(roll)",
+                                       {"roll", "pitch", "yaw"}, in_each(&Problem::obstacles, &Obstacle::rpy_rad))
+        .between(-360, 360);
 }
 
 /// @param content where the Kind keeps what is in its file
@@ -96,8 +93,7 @@ void add_mesh(Rows& rows, const std::string& path) {
     rows.push_back(parameters::number<Problem>(
                        path + ".scale", "metres in one unit of the file: 0.001 for millimetres",
                        [](auto& p, std::size_t i) -> auto& { return std::get<Mesh>(p.obstacles[i].shape).scale; })
-                       .at_least(1e-6)
-                       .at_most(1e6));
+                       .between(1e-6, 1e6));
     rows.push_back(center(path, "where the origin of the file stands"));
     rows.push_back(orientation(path));
 }
@@ -112,13 +108,11 @@ void add_octomap(Rows& rows, const std::string& path) {
 
 void add_obstacle_rows(Rows& rows) {
     const std::string path = "environment.obstacles[]";
-    const auto shape = [](auto& p, std::size_t i) -> auto& {
-        return p.obstacles[i].shape;
-    };
-    rows.push_back(parameters::list<Problem>(
-        "environment.obstacles", "solids in the world frame", [](auto& p) -> auto& { return p.obstacles; }));
-    rows.push_back(parameters::text<Problem>(
-        path + ".name", "name, used once", [](auto& p, std::size_t i) -> auto& { return p.obstacles[i].name; }));
+    const auto shape = in_each(&Problem::obstacles, &Obstacle::shape);
+    rows.push_back(
+        parameters::list<Problem>("environment.obstacles", "solids in the world frame", &Problem::obstacles));
+    rows.push_back(
+        parameters::text<Problem>(path + ".name", "name, used once", in_each(&Problem::obstacles, &Obstacle::name)));
     add_shape_rows<Problem>(rows, path, shape, [](Rows& to, const std::string& at) {
         to.push_back(center(at, "centre").is_required());
         to.push_back(orientation(at));

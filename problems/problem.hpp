@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -29,6 +30,9 @@ enum class Variant {
     mp_arm_da,   ///< dynamics-aware: closed-loop flights without surface effects
     mp_arm_ada,  ///< aerodynamics-aware: closed-loop flights through the aero map
 };
+
+/// Each once, in their order.
+inline constexpr std::array all_variants{Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada};
 
 /// Name as in problem files: "mp-arm-ada".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Variant variant);

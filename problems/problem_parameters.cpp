@@ -22,7 +22,9 @@ namespace {
 
 using Rows = std::vector<Parameter<Problem>>;
 
-// The factories for this table's Model; the members are named by lambdas.
+using parameters::append;
+using parameters::in;
+
 template <class Member>
 Parameter<Problem> number(std::string_view path, std::string_view description, Member member) {
     return parameters::number<Problem>(path, description, member);
@@ -32,28 +34,23 @@ Parameter<Problem> group(std::string_view path, std::string_view description) {
 }
 template <class Member>
 Parameter<Problem> position(std::string_view path, std::string_view description, Member member) {
-    return number(path, description, member).at_least(-farthest_m).at_most(farthest_m);
+    return number(path, description, member).between(-farthest_m, farthest_m);
 }
 template <class Member>
 Parameter<Problem> angle(std::string_view path, std::string_view description, double max_deg, Member member) {
-    return number(path, description, member).at_least(-max_deg).at_most(max_deg);
-}
-template <class Member>
-Parameter<Problem> positive(std::string_view path, std::string_view description, double most, Member member) {
-    return number(path, description, member).above(0).at_most(most);
+    return number(path, description, member).between(-max_deg, max_deg);
 }
 
 /// Far below what moves a vehicle; with less, a motion has more control ticks than can be counted.
 template <class Member>
 Parameter<Problem> motion_limit(std::string_view path, std::string_view description, double most, Member member) {
-    return number(path, description, member).at_least(1e-6).at_most(most);
+    return number(path, description, member).between(1e-6, most);
 }
 
 void add_robot(Rows& rows) {
     rows.push_back(group("robot", "the aerial manipulator, here or in a file of its own").is_required().or_file());
     for (const Parameter<Robot>& inner : robot_parameters().rows()) {
-        rows.push_back(parameters::nested<Problem>(
-            inner, "robot.", [](auto& p) -> auto& { return p.robot; }));
+        rows.push_back(parameters::nested<Problem>(inner, "robot.", &Problem::robot));
     }
 }
 
@@ -67,35 +64,29 @@ void add_plane(Rows& rows) {
                        [](Problem& p, std::size_t, const std::vector<double>& given) {
                            p.plane = PlaneOfMotion({given[0], given[1], given[2]}, p.plane.heading_rad());
                        })
-                       .at_least(-farthest_m)
-                       .at_most(farthest_m));
+                       .between(-farthest_m, farthest_m));
     auto heading = parameters::row<Problem>(ParameterKind::number, "environment.plane.heading_deg",
                                             "direction of its x axis, from the world's x to its y");
     heading.get = [](const Problem& p, std::size_t) { return Value(p.plane.heading_rad()); };
     heading.set = [](Problem& p, std::size_t, const Value& value) {
         p.plane = PlaneOfMotion(p.plane.origin_m(), std::get<double>(value));
     };
-    rows.push_back(std::move(heading).at_least(-360).at_most(360));
+    rows.push_back(std::move(heading).between(-360, 360));
 }
 
 void add_environment(Rows& rows) {
     rows.push_back(group("environment", "the world and where the vehicle may be").is_required());
     add_plane(rows);
     rows.push_back(group("environment.bounds", "where the multirotor's centre of mass may be").is_required());
-    rows.push_back(parameters::pair<Problem>(
-                       "environment.bounds.x_m", "along the plane", {"low", "high"},
-                       [](auto& p) -> auto& { return p.bounds.x_low_m; },
-                       [](auto& p) -> auto& { return p.bounds.x_high_m; })
-                       .is_required()
-                       .at_least(-farthest_m)
-                       .at_most(farthest_m));
-    rows.push_back(parameters::pair<Problem>(
-                       "environment.bounds.z_m", "upwards", {"low", "high"},
-                       [](auto& p) -> auto& { return p.bounds.z_low_m; },
-                       [](auto& p) -> auto& { return p.bounds.z_high_m; })
-                       .is_required()
-                       .at_least(-farthest_m)
-                       .at_most(farthest_m));
+    const auto bounds = [&rows](std::string_view path, std::string_view description, double Bounds::*low,
+                                double Bounds::*high) {
+        rows.push_back(parameters::pair<Problem>(path, description, {"low", "high"}, in(&Problem::bounds, low),
+                                                 in(&Problem::bounds, high))
+                           .between(-farthest_m, farthest_m)
+                           .is_required());
+    };
+    bounds("environment.bounds.x_m", "along the plane", &Bounds::x_low_m, &Bounds::x_high_m);
+    bounds("environment.bounds.z_m", "upwards", &Bounds::z_low_m, &Bounds::z_high_m);
     add_obstacle_rows(rows);
 }
 
@@ -116,11 +107,9 @@ ReferencePoint& reference_in(Problem& p) {
 
 /// One row for each coordinate of the reference that a vehicle in flight follows.
 void add_start_reference(Rows& rows) {
-    const auto reference = [](auto& p) -> auto& {
-        return p.start.reference;
-    };
     rows.push_back(parameters::optional_group<Problem>(
-        "start.reference", "that a vehicle in flight follows; else where it is, as it moves", reference));
+        "start.reference", "that a vehicle in flight follows; else where it is, as it moves",
+        in(&Problem::start, &Start::reference)));
     struct Coordinate {
         std::string_view path, description;
         double most;
@@ -149,100 +138,64 @@ void add_start_reference(Rows& rows) {
 }
 
 void add_start(Rows& rows) {
-    rows.push_back(group("start", "where the flight begins").is_required());
-    rows.push_back(position(
-                       "start.x_m", "along the plane", [](auto& p) -> auto& { return p.start.x_m; })
-                       .is_required());
-    rows.push_back(position(
-                       "start.z_m", "upwards", [](auto& p) -> auto& { return p.start.z_m; })
-                       .is_required());
-    rows.push_back(angle(
-                       "start.arm_deg", "arm from the vehicle's nose, down is 90", 3600,
-                       [](auto& p) -> auto& { return p.start.arm_rad; })
-                       .is_required());
-    rows.push_back(angle(
-        "start.pitch_deg", "pitch, nose down", 89, [](auto& p) -> auto& { return p.start.pitch_rad; }));
-    rows.push_back(angle(
-        "start.vx_m_s", "speed along the plane", 100, [](auto& p) -> auto& { return p.start.vx_m_s; }));
-    rows.push_back(angle(
-        "start.vz_m_s", "speed upwards", 100, [](auto& p) -> auto& { return p.start.vz_m_s; }));
-    rows.push_back(angle(
-        "start.pitch_rate_deg_s", "pitch rate, nose down", 1800,
-        [](auto& p) -> auto& { return p.start.pitch_rate_rad_s; }));
-    rows.push_back(angle(
-        "start.arm_rate_deg_s", "rate of the arm's joint", 1800,
-        [](auto& p) -> auto& { return p.start.arm_rate_rad_s; }));
-    rows.push_back(parameters::numbers<Problem>(
-        "start.rotor_thrust_n", "of a vehicle in flight: free-air thrust of each rotor; none: those of a hover", {},
-        [](const Problem& p, std::size_t) { return Value(p.start.rotor_thrust_n); },
-        [](Problem& p, std::size_t, const std::vector<double>& given) { p.start.rotor_thrust_n = given; }));
-    rows.push_back(parameters::numbers<Problem>(
-        "start.controller_memory", "of a vehicle in flight: what its controller remembers; none: as after a long hover",
-        {}, [](const Problem& p, std::size_t) { return Value(p.start.controller_memory); },
-        [](Problem& p, std::size_t, const std::vector<double>& given) { p.start.controller_memory = given; }));
+    const auto of = [](auto member) { return in(&Problem::start, member); };
+    append(rows,
+           {group("start", "where the flight begins").is_required(),
+            position("start.x_m", "along the plane", of(&Start::x_m)).is_required(),
+            position("start.z_m", "upwards", of(&Start::z_m)).is_required(),
+            angle("start.arm_deg", "arm from the vehicle's nose, down is 90", 3600, of(&Start::arm_rad)).is_required(),
+            angle("start.pitch_deg", "pitch, nose down", 89, of(&Start::pitch_rad)),
+            angle("start.vx_m_s", "speed along the plane", 100, of(&Start::vx_m_s)),
+            angle("start.vz_m_s", "speed upwards", 100, of(&Start::vz_m_s)),
+            angle("start.pitch_rate_deg_s", "pitch rate, nose down", 1800, of(&Start::pitch_rate_rad_s)),
+            angle("start.arm_rate_deg_s", "rate of the arm's joint", 1800, of(&Start::arm_rate_rad_s))});
+    const auto numbers = [&](std::string_view path, std::string_view description, std::vector<double> Start::*member) {
+        rows.push_back(parameters::numbers<Problem>(
+            path, description, {}, [member](const Problem& p, std::size_t) { return Value(p.start.*member); },
+            [member](Problem& p, std::size_t, const std::vector<double>& given) { p.start.*member = given; }));
+    };
+    numbers("start.rotor_thrust_n", "of a vehicle in flight: free-air thrust of each rotor; none: those of a hover",
+            &Start::rotor_thrust_n);
+    numbers("start.controller_memory",
+            "of a vehicle in flight: what its controller remembers; none: as after a long hover",
+            &Start::controller_memory);
     add_start_reference(rows);
 }
 
-/// What only agile references need.
-void add_agile_motion(Rows& rows) {
-    rows.push_back(number(
-                       "motion.max_thrust_ratio",
-                       "force that a point mass needs to follow the reference, over its weight; collisions of the "
-                       "reference are then those of the tilted vehicle; null: any force, and a level vehicle",
-                       [](auto& p) -> auto& { return p.motion.max_thrust_ratio; })
-                       .at_least(1.001)
-                       .at_most(100));
-    rows.push_back(number(
-                       "motion.max_pitch_rate_deg_s", "how fast the direction of that force turns; null: at any rate",
-                       [](auto& p) -> auto& { return p.motion.max_pitch_rate_rad_s; })
-                       .at_least(0.1)
-                       .at_most(36000));
-}
-
 void add_motion(Rows& rows) {
-    rows.push_back(group("motion", "limits of the reference"));
-    rows.push_back(motion_limit(
-        "motion.max_speed_m_s", "speed", 100, [](auto& p) -> auto& { return p.motion.max_speed_m_s; }));
-    rows.push_back(motion_limit(
-        "motion.max_acceleration_m_s2", "acceleration", 100,
-        [](auto& p) -> auto& { return p.motion.max_acceleration_m_s2; }));
-    rows.push_back(motion_limit(
-        "motion.max_jerk_m_s3", "jerk; PX4's default for its own missions", 10000,
-        [](auto& p) -> auto& { return p.motion.max_jerk_m_s3; }));
-    rows.push_back(motion_limit(
-        "motion.max_arm_rate_deg_s", "rate of the arm's joint", 3600,
-        [](auto& p) -> auto& { return p.motion.max_arm_rate_rad_s; }));
-    rows.push_back(motion_limit(
-        "motion.max_arm_acceleration_deg_s2", "acceleration of the arm's joint", 36000,
-        [](auto& p) -> auto& { return p.motion.max_arm_acceleration_rad_s2; }));
-    add_agile_motion(rows);
-}
-
-std::vector<std::string_view> algorithm_names() {
-    std::vector<std::string_view> names;
-    for (const AlgorithmInfo& algorithm : algorithms()) {
-        names.push_back(algorithm.name);
-    }
-    return names;
+    const auto of = [](auto member) { return in(&Problem::motion, member); };
+    append(rows,
+           {group("motion", "limits of the reference"),
+            motion_limit("motion.max_speed_m_s", "speed", 100, of(&MotionLimits::max_speed_m_s)),
+            motion_limit("motion.max_acceleration_m_s2", "acceleration", 100, of(&MotionLimits::max_acceleration_m_s2)),
+            motion_limit("motion.max_jerk_m_s3", "jerk; PX4's default for its own missions", 10000,
+                         of(&MotionLimits::max_jerk_m_s3)),
+            motion_limit("motion.max_arm_rate_deg_s", "rate of the arm's joint", 3600,
+                         of(&MotionLimits::max_arm_rate_rad_s)),
+            motion_limit("motion.max_arm_acceleration_deg_s2", "acceleration of the arm's joint", 36000,
+                         of(&MotionLimits::max_arm_acceleration_rad_s2)),
+            // What only agile references need.
+            number("motion.max_thrust_ratio",
+                   "force that a point mass needs to follow the reference, over its weight; collisions of the "
+                   "reference are then those of the tilted vehicle; null: any force, and a level vehicle",
+                   of(&MotionLimits::max_thrust_ratio))
+                .between(1.001, 100),
+            number("motion.max_pitch_rate_deg_s", "how fast the direction of that force turns; null: at any rate",
+                   of(&MotionLimits::max_pitch_rate_rad_s))
+                .between(0.1, 36000)});
 }
 
 void add_objective(Rows& rows) {
-    std::vector<std::pair<Objective, std::string_view>> names;
-    names.reserve(all_objectives.size());
-    for (const Objective objective : all_objectives) {
-        names.emplace_back(objective, name_of(objective));
-    }
-    rows.push_back(parameters::choice<Problem>(
-                       "planner.objective", "what a plan should keep small", names,
-                       [](auto& p) -> auto& { return p.planner.objective; })
+    rows.push_back(parameters::choice<Problem>("planner.objective", "what a plan should keep small",
+                                               parameters::named(all_objectives),
+                                               in(&Problem::planner, &PlannerSettings::objective))
                        .or_group([](const Problem& p) { return !p.planner.objective.single(); },
                                  [](Problem& p) { p.planner.objective = CostFunction::of_nothing(); }));
     for (const Objective objective : all_objectives) {
         rows.push_back(number("planner.objective." + std::string(name_of(objective)),
                               "weight of 1 " + std::string(unit_of(objective)),
                               [objective](auto& p) -> decltype(auto) { return p.planner.objective.weight(objective); })
-                           .at_least(0)
-                           .at_most(1e9));
+                           .between(0, 1e9));
     }
 }
 
@@ -270,70 +223,54 @@ void add_algorithm_parameters(Rows& rows) {
 }
 
 void add_planner(Rows& rows) {
-    std::vector<std::pair<Variant, std::string_view>> variants;
-    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}) {
-        variants.emplace_back(variant, name_of(variant));
-    }
-    rows.push_back(group("planner", "how to search"));
-    rows.push_back(parameters::choice<Problem>(
-        "planner.variant", "what the planner knows of the physics", variants,
-        [](auto& p) -> auto& { return p.planner.variant; }));
-    rows.push_back(parameters::choice<Problem>(
-        "planner.algorithm", "how it searches; some plan for some variants only, see `downwash planners`",
-        algorithm_names(), [](auto& p) -> auto& { return p.planner.algorithm; }));
+    using Settings = PlannerSettings;
+    const auto of = [](auto member) { return in(&Problem::planner, member); };
+    const auto integer = [&](std::string_view path, std::string_view description, auto member) {
+        return parameters::integer<Problem>(path, description, of(member));
+    };
+    append(rows, {group("planner", "how to search"),
+                  parameters::choice<Problem>("planner.variant", "what the planner knows of the physics",
+                                              parameters::named(all_variants), of(&Settings::variant)),
+                  parameters::choice<Problem>(
+                      "planner.algorithm", "how it searches; some plan for some variants only, see `downwash planners`",
+                      algorithm_names(), of(&Settings::algorithm))});
     add_objective(rows);
-    rows.push_back(positive(
-        "planner.time_limit_s",
-        "for the search alone, without aero map and last flight; null: 10 s, or none where max_iterations is set", 1e6,
-        [](auto& p) -> auto& { return p.planner.time_limit_s; }));
-    rows.push_back(parameters::integer<Problem>(
-                       "planner.max_iterations", "limit for a run that is repeatable bit for bit",
-                       [](auto& p) -> auto& { return p.planner.max_iterations; })
-                       .at_least(1)
-                       .at_most(1e15));
-    rows.push_back(parameters::integer<Problem>(
-                       "planner.seed", "every random number of the search follows from it",
-                       [](auto& p) -> auto& { return p.planner.seed; })
-                       .at_least(0)
-                       .at_most(4294967295.0));
-    rows.push_back(number(
-                       "planner.safety_margin_m", "least clearance while planning",
-                       [](auto& p) -> auto& { return p.planner.safety_margin_m; })
-                       .at_least(0)
-                       .at_most(100));
-    rows.push_back(number(
-                       "planner.max_saturation",
-                       "greatest demand on a rotor or the joint over its limit while planning; above 1 it is clipped",
-                       [](auto& p) -> auto& { return p.planner.max_saturation; })
-                       .at_least(1)
-                       .at_most(1000));
-    rows.push_back(number(
-                       "planner.max_pitch_rate_deg_s",
-                       "how fast the vehicle may turn while planning; an edge that turns faster is rejected as "
-                       "unstable; null: at any rate",
-                       [](auto& p) -> auto& { return p.planner.max_pitch_rate_rad_s; })
-                       .at_least(1e-3)
-                       .at_most(1e5));
     const auto is_uncertain = [](const Problem& p, std::size_t) { return p.uncertainty.has_value(); };
     constexpr std::string_view with_uncertainty = "with an uncertainty";
-    rows.push_back(parameters::integer<Problem>(
-                       "planner.worlds", "in which every edge has to succeed, the nominal one included",
-                       [](auto& p) -> auto& { return p.planner.worlds; })
-                       .at_least(1)
-                       .at_most(64)
-                       .only(with_uncertainty, is_uncertain));
-    rows.push_back(number(
-                       "planner.max_failure_probability", "share of worlds in which a plan may fail",
-                       [](auto& p) -> auto& { return p.planner.max_failure_probability; })
-                       .at_least(1e-4)
-                       .at_most(0.5)
-                       .only(with_uncertainty, is_uncertain));
-    rows.push_back(number(
-                       "planner.confidence", "that a plan which is called solved does not fail more often",
-                       [](auto& p) -> auto& { return p.planner.confidence; })
-                       .at_least(0.5)
-                       .at_most(0.999999)
-                       .only(with_uncertainty, is_uncertain));
+    append(
+        rows,
+        {number("planner.time_limit_s",
+                "for the search alone, without aero map and last flight; null: 10 s, or none where max_iterations "
+                "is set",
+                of(&Settings::time_limit_s))
+             .above(0)
+             .at_most(1e6),
+         integer("planner.max_iterations", "limit for a run that is repeatable bit for bit", &Settings::max_iterations)
+             .between(1, 1e15),
+         integer("planner.seed", "every random number of the search follows from it", &Settings::seed)
+             .between(0, 4294967295.0),
+         number("planner.safety_margin_m", "least clearance while planning", of(&Settings::safety_margin_m))
+             .between(0, 100),
+         number("planner.max_saturation",
+                "greatest demand on a rotor or the joint over its limit while planning; above 1 it is clipped",
+                of(&Settings::max_saturation))
+             .between(1, 1000),
+         number("planner.max_pitch_rate_deg_s",
+                "how fast the vehicle may turn while planning; an edge that turns faster is rejected as unstable; "
+                "null: at any rate",
+                of(&Settings::max_pitch_rate_rad_s))
+             .between(1e-3, 1e5),
+         integer("planner.worlds", "in which every edge has to succeed, the nominal one included", &Settings::worlds)
+             .between(1, 64)
+             .only(with_uncertainty, is_uncertain),
+         number("planner.max_failure_probability", "share of worlds in which a plan may fail",
+                of(&Settings::max_failure_probability))
+             .between(1e-4, 0.5)
+             .only(with_uncertainty, is_uncertain),
+         number("planner.confidence", "that a plan which is called solved does not fail more often",
+                of(&Settings::confidence))
+             .between(0.5, 0.999999)
+             .only(with_uncertainty, is_uncertain)});
     add_algorithm_parameters(rows);
 }
 
@@ -342,10 +279,9 @@ Rows all_rows() {
     rows.push_back(
         parameters::constant<Problem>("schema", "format and version of a problem file", "downwash/problem/v1")
             .is_required());
-    rows.push_back(parameters::identifier<Problem>(
-        "name", "name of the problem; it becomes part of a path", [](auto& p) -> auto& { return p.name; }));
-    rows.push_back(parameters::text<Problem>(
-        "description", "what the problem is about", [](auto& p) -> auto& { return p.description; }));
+    append(rows,
+           {parameters::identifier<Problem>("name", "name of the problem; it becomes part of a path", &Problem::name),
+            parameters::text<Problem>("description", "what the problem is about", &Problem::description)});
     add_robot(rows);
     add_environment(rows);
     add_aero_rows(rows);

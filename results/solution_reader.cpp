@@ -162,8 +162,7 @@ void read_algorithm(JsonReader& reader, const Node& root, Solution& solution) {
 void read_head(JsonReader& reader, const Node& root, Solution& solution) {
     reader.read_choice(root, "status", std::array{Status::none, Status::approximate, Status::solved}, solution.status);
     reader.read_flag(root, "interrupted", solution.interrupted);
-    reader.read_choice(root, "variant", std::array{Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada},
-                       solution.variant);
+    reader.read_choice(root, "variant", all_variants, solution.variant);
     problems::read_objective(reader, root, solution.objective);
     read_algorithm(reader, root, solution);
     reader.read_count(root, "seed", solution.seed);

@@ -18,41 +18,26 @@ void add_shape_rows(std::vector<Parameter<Model>>& rows, const std::string& path
     using parameters::alternative;
     using parameters::number;
     using parameters::vector;
-    const auto box = [shape](auto& m, std::size_t i) -> auto& {
-        return std::get<Box>(shape(m, i));
+    const auto of = [shape]<class Kind, class Number>(Number Kind::*member) {
+        return parameters::in(
+            [shape](auto& m, std::size_t i) -> auto& { return std::get<Kind>(shape(m, i)); }, member);
     };
-    const auto cylinder = [shape](auto& m, std::size_t i) -> auto& {
-        return std::get<Cylinder>(shape(m, i));
-    };
-    const auto sphere = [shape](auto& m, std::size_t i) -> auto& {
-        return std::get<Sphere>(shape(m, i));
-    };
-
     const auto add_length = [&](Parameter<Model> row) {
-        rows.push_back(std::move(row).is_required().at_least(1e-6).at_most(1e5));
+        rows.push_back(std::move(row).between(1e-6, 1e5).is_required());
     };
     rows.push_back(alternative<Box, Model>(path + ".box", "a solid box", shape));
-    add_length(vector<Model>(
-        path + ".box.size_m", "edge lengths along its own axes",
-        {"x", "y", "z"}, [box](auto& m, std::size_t i) -> auto& { return box(m, i).size_m; }));
+    add_length(
+        vector<Model>(path + ".box.size_m", "edge lengths along its own axes", {"x", "y", "z"}, of(&Box::size_m)));
     add_place(rows, path + ".box");
     rows.push_back(alternative<Cylinder, Model>(path + ".cylinder", "a solid cylinder with flat ends", shape));
-    add_length(number<Model>(
-        path + ".cylinder.radius_m",
-        "radius", [cylinder](auto& m, std::size_t i) -> auto& { return cylinder(m, i).radius_m; }));
-    add_length(number<Model>(
-        path + ".cylinder.length_m",
-        "length from end to end", [cylinder](auto& m, std::size_t i) -> auto& { return cylinder(m, i).length_m; }));
-    rows.push_back(vector<Model>(
-                       path + ".cylinder.axis", "direction of its length, of any length but zero",
-                       {"x", "y", "z"}, [cylinder](auto& m, std::size_t i) -> auto& { return cylinder(m, i).axis; })
-                       .at_least(-1e5)
-                       .at_most(1e5));
+    add_length(number<Model>(path + ".cylinder.radius_m", "radius", of(&Cylinder::radius_m)));
+    add_length(number<Model>(path + ".cylinder.length_m", "length from end to end", of(&Cylinder::length_m)));
+    rows.push_back(vector<Model>(path + ".cylinder.axis", "direction of its length, of any length but zero",
+                                 {"x", "y", "z"}, of(&Cylinder::axis))
+                       .between(-1e5, 1e5));
     add_place(rows, path + ".cylinder");
     rows.push_back(alternative<Sphere, Model>(path + ".sphere", "a solid sphere", shape));
-    add_length(number<Model>(
-        path + ".sphere.radius_m",
-        "radius", [sphere](auto& m, std::size_t i) -> auto& { return sphere(m, i).radius_m; }));
+    add_length(number<Model>(path + ".sphere.radius_m", "radius", of(&Sphere::radius_m)));
     add_place(rows, path + ".sphere");
 }
 

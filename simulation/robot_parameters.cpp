@@ -23,7 +23,9 @@ constexpr double min_length_m = 1e-4;
 constexpr double min_force_n = 1e-3;
 constexpr double min_torque_nm = 1e-6;
 
-// The factories for this table's Model; the members are named by lambdas.
+using parameters::append;
+using parameters::in;
+
 template <class Member>
 Parameter<Robot> number(std::string_view path, std::string_view description, Member member) {
     return parameters::number<Robot>(path, description, member);
@@ -33,89 +35,67 @@ Parameter<Robot> group(std::string_view path, std::string_view description) {
 }
 
 /// The keys of a drag; they may be left out.
-template <class Drag>
-void add_drag(Rows& rows, const std::string& of, std::string_view description, Drag drag) {
-    rows.push_back(parameters::group<Robot>(of + ".drag", description));
-    rows.push_back(number(
-                       of + ".drag.linear_n_s_m",
-                       "force per speed through the air", [drag](auto& r) -> auto& { return drag(r).linear_n_s_m; })
-                       .at_least(0)
-                       .at_most(1e4));
-    rows.push_back(number(
-                       of + ".drag.quadratic_n_s2_m2",
-                       "force per square of that speed", [drag](auto& r) -> auto& { return drag(r).quadratic_n_s2_m2; })
-                       .at_least(0)
-                       .at_most(1e4));
+template <class Part>
+void add_drag(Rows& rows, const std::string& of, std::string_view description, Part part) {
+    using Drag = DragParameters;
+    append(rows,
+           {parameters::group<Robot>(of + ".drag", description),
+            number(of + ".drag.linear_n_s_m", "force per speed through the air", in(part, &Drag::linear_n_s_m))
+                .between(0, 1e4),
+            number(of + ".drag.quadratic_n_s2_m2", "force per square of that speed", in(part, &Drag::quadratic_n_s2_m2))
+                .between(0, 1e4)});
 }
 
 void add_multirotor(Rows& rows) {
-    rows.push_back(group("multirotor", "the multirotor without its arm"));
-    rows.push_back(number(
-                       "multirotor.mass_kg", "mass, rotors and battery included, arm excluded",
-                       [](auto& r) -> auto& { return r.multirotor.mass_kg; })
-                       .is_required()
-                       .at_least(min_mass_kg)
-                       .at_most(1e4));
-    rows.push_back(number(
-                       "multirotor.pitch_inertia_kg_m2",
-                       "moment of inertia about the pitch axis through its centre of mass",
-                       [](auto& r) -> auto& { return r.multirotor.pitch_inertia_kg_m2; })
-                       .is_required()
-                       .at_least(min_inertia_kg_m2)
-                       .at_most(1e5));
-    add_drag(
-        rows, "multirotor", "air drag at its centre of mass; none where it is left out",
-        [](auto& r) -> auto& { return r.multirotor.drag; });
-    rows.push_back(parameters::list<Robot>(
-                       "multirotor.body", "solids that can touch obstacles, in the body frame",
-                       [](auto& r) -> auto& { return r.body; })
-                       .is_required());
+    using Body = MultirotorParameters;
+    append(rows, {group("multirotor", "the multirotor without its arm"),
+                  number("multirotor.mass_kg", "mass, rotors and battery included, arm excluded",
+                         in(&Robot::multirotor, &Body::mass_kg))
+                      .between(min_mass_kg, 1e4)
+                      .is_required(),
+                  number("multirotor.pitch_inertia_kg_m2",
+                         "moment of inertia about the pitch axis through its centre of mass",
+                         in(&Robot::multirotor, &Body::pitch_inertia_kg_m2))
+                      .between(min_inertia_kg_m2, 1e5)
+                      .is_required()});
+    add_drag(rows, "multirotor", "air drag at its centre of mass; none where it is left out",
+             in(&Robot::multirotor, &Body::drag));
+    rows.push_back(
+        parameters::list<Robot>("multirotor.body", "solids that can touch obstacles, in the body frame", &Robot::body)
+            .is_required());
     add_shape_rows<Robot>(
-        rows, "multirotor.body[]", [](auto& r, std::size_t i) -> auto& { return r.body[i].shape; },
+        rows, "multirotor.body[]", parameters::in_each(&Robot::body, &BodyShape::shape),
         [](Rows& to, const std::string& path) {
-            to.push_back(parameters::vector<Robot>(
-                             path + ".center_m", "centre from the multirotor's centre of mass", {"x", "y", "z"},
-                             [](auto& r, std::size_t i) -> auto& { return r.body[i].center_body_m; })
-                             .at_least(-100)
-                             .at_most(100));
+            to.push_back(parameters::vector<Robot>(path + ".center_m", "centre from the multirotor's centre of mass",
+                                                   {"x", "y", "z"},
+                                                   parameters::in_each(&Robot::body, &BodyShape::center_body_m))
+                             .between(-100, 100));
         });
 }
 
 void add_rotors(Rows& rows) {
-    rows.push_back(group("rotors", "the rotors, all alike"));
-    rows.push_back(number(
-                       "rotors.radius_m", "radius", [](auto& r) -> auto& { return r.rotors.radius_m; })
-                       .is_required()
-                       .at_least(min_length_m)
-                       .at_most(10));
-    rows.push_back(parameters::points<Robot>(
-                       "rotors.positions_m", "hubs from the multirotor's centre of mass",
-                       [](auto& r) -> auto& { return r.rotors.positions_m; })
-                       .is_required()
-                       .at_least(-100)
-                       .at_most(100));
-    rows.push_back(number(
-                       "rotors.min_thrust_n", "least thrust of one rotor in free air that can be commanded",
-                       [](auto& r) -> auto& { return r.rotors.min_thrust_n; })
-                       .at_least(0)
-                       .at_most(1e5));
-    rows.push_back(number(
-                       "rotors.max_thrust_n", "greatest thrust of one rotor in free air that can be commanded",
-                       [](auto& r) -> auto& { return r.rotors.max_thrust_n; })
-                       .is_required()
-                       .at_least(min_force_n)
-                       .at_most(1e5));
-    rows.push_back(number(
-                       "rotors.time_constant_s", "of the first-order lag of thrust behind command; 0 for none",
-                       [](auto& r) -> auto& { return r.rotors.time_constant_s; })
-                       .at_least(0)
-                       .at_most(10));
-    rows.push_back(number(
-                       "rotors.power_coefficient_w_n1p5", "power of one rotor is this times its commanded thrust^1.5",
-                       [](auto& r) -> auto& { return r.rotors.power_coefficient_w_n1p5; })
-                       .is_required()
-                       .at_least(1e-6)
-                       .at_most(1e6));
+    const auto of = [](auto member) { return in(&Robot::rotors, member); };
+    using Rotors = RotorParameters;
+    append(rows, {group("rotors", "the rotors, all alike"),
+                  number("rotors.radius_m", "radius", of(&Rotors::radius_m)).between(min_length_m, 10).is_required(),
+                  parameters::points<Robot>("rotors.positions_m", "hubs from the multirotor's centre of mass",
+                                            of(&Rotors::positions_m))
+                      .between(-100, 100)
+                      .is_required(),
+                  number("rotors.min_thrust_n", "least thrust of one rotor in free air that can be commanded",
+                         of(&Rotors::min_thrust_n))
+                      .between(0, 1e5),
+                  number("rotors.max_thrust_n", "greatest thrust of one rotor in free air that can be commanded",
+                         of(&Rotors::max_thrust_n))
+                      .between(min_force_n, 1e5)
+                      .is_required(),
+                  number("rotors.time_constant_s", "of the first-order lag of thrust behind command; 0 for none",
+                         of(&Rotors::time_constant_s))
+                      .between(0, 10),
+                  number("rotors.power_coefficient_w_n1p5", "power of one rotor is this times its commanded thrust^1.5",
+                         of(&Rotors::power_coefficient_w_n1p5))
+                      .between(1e-6, 1e6)
+                      .is_required()});
 }
 
 Parameter<Robot> arm_limits() {
@@ -136,55 +116,36 @@ Parameter<Robot> arm_limits() {
         r.arm.lower_limit_rad = given ? (*given)[0] : 0;
         r.arm.upper_limit_rad = given ? (*given)[1] : 0;
     };
-    return std::move(limits).at_least(-3600).at_most(3600);
+    return std::move(limits).between(-3600, 3600);
 }
 
 void add_arm(Rows& rows) {
-    rows.push_back(group("arm", "the arm with its end effector, one rigid body on one joint"));
-    rows.push_back(parameters::pair<Robot>(
-                       "arm.joint_m", "joint from the multirotor's centre of mass", {"x", "z"},
-                       [](auto& r) -> auto& { return r.arm.joint_x_m; },
-                       [](auto& r) -> auto& { return r.arm.joint_z_m; })
-                       .at_least(-100)
-                       .at_most(100));
-    rows.push_back(number(
-                       "arm.length_m", "joint to end effector", [](auto& r) -> auto& { return r.arm.length_m; })
-                       .is_required()
-                       .at_least(min_length_m)
-                       .at_most(100));
-    rows.push_back(number(
-                       "arm.mass_kg", "mass, end effector included", [](auto& r) -> auto& { return r.arm.mass_kg; })
-                       .is_required()
-                       .at_least(min_mass_kg)
-                       .at_most(1e4));
-    rows.push_back(number(
-                       "arm.center_of_mass_m", "joint to the arm's centre of mass",
-                       [](auto& r) -> auto& { return r.arm.center_of_mass_m; })
-                       .is_required()
-                       .at_least(0)
-                       .at_most(100));
-    rows.push_back(number(
-                       "arm.inertia_kg_m2", "moment of inertia about the arm's own centre of mass",
-                       [](auto& r) -> auto& { return r.arm.inertia_kg_m2; })
-                       .is_required()
-                       .at_least(min_inertia_kg_m2)
-                       .at_most(1e5));
-    rows.push_back(
-        number(
-            "arm.radius_m", "radius of the capsule that encloses it", [](auto& r) -> auto& { return r.arm.radius_m; })
-            .is_required()
-            .at_least(min_length_m)
-            .at_most(10));
-    rows.push_back(arm_limits());
-    rows.push_back(
-        number(
-            "arm.max_torque_nm", "greatest torque of the joint", [](auto& r) -> auto& { return r.arm.max_torque_nm; })
-            .is_required()
-            .at_least(min_torque_nm)
-            .at_most(1e5));
-    add_drag(
-        rows, "arm", "air drag of the whole arm in a stream across it; none where it is left out",
-        [](auto& r) -> auto& { return r.arm.drag; });
+    using Arm = ArmParameters;
+    const auto of = [](auto member) { return in(&Robot::arm, member); };
+    append(
+        rows,
+        {group("arm", "the arm with its end effector, one rigid body on one joint"),
+         parameters::pair<Robot>("arm.joint_m", "joint from the multirotor's centre of mass", {"x", "z"},
+                                 of(&Arm::joint_x_m), of(&Arm::joint_z_m))
+             .between(-100, 100),
+         number("arm.length_m", "joint to end effector", of(&Arm::length_m)).between(min_length_m, 100).is_required(),
+         number("arm.mass_kg", "mass, end effector included", of(&Arm::mass_kg))
+             .between(min_mass_kg, 1e4)
+             .is_required(),
+         number("arm.center_of_mass_m", "joint to the arm's centre of mass", of(&Arm::center_of_mass_m))
+             .between(0, 100)
+             .is_required(),
+         number("arm.inertia_kg_m2", "moment of inertia about the arm's own centre of mass", of(&Arm::inertia_kg_m2))
+             .between(min_inertia_kg_m2, 1e5)
+             .is_required(),
+         number("arm.radius_m", "radius of the capsule that encloses it", of(&Arm::radius_m))
+             .between(min_length_m, 10)
+             .is_required(),
+         arm_limits(),
+         number("arm.max_torque_nm", "greatest torque of the joint", of(&Arm::max_torque_nm))
+             .between(min_torque_nm, 1e5)
+             .is_required()});
+    add_drag(rows, "arm", "air drag of the whole arm in a stream across it; none where it is left out", of(&Arm::drag));
 }
 
 /// Collects the keys that a control law describes.
@@ -215,7 +176,7 @@ class LawRows {
     /// Never negative.
     template <class Number>
     Parameter<Robot> gain(std::string_view path, std::string_view description, Number Law::*member) const {
-        return number(path, description, member).at_least(0).at_most(1e4);
+        return number(path, description, member).between(0, 1e4);
     }
     template <class Number>
     Parameter<Robot> number(std::string_view path, std::string_view description, Number Law::*member) const {
@@ -224,45 +185,44 @@ class LawRows {
     /// The keys of how far a law goes, which the laws here share.
     void add_limits() {
         add(number("rotor_lead", "share by which rotors with a lag are asked for more than they lack", &Law::rotor_lead)
-                .at_least(0)
-                .at_most(10));
+                .between(0, 10));
         add(number("max_tilt_deg", "the pitch reference is clipped to this", &Law::max_tilt_rad)
                 .at_least(0.01)
                 .below(90));
         add(number("min_vertical_force_ratio", "least vertical force of the inversion over the weight",
                    &Law::min_vertical_force_ratio)
-                .at_least(1e-3)
-                .at_most(1));
+                .between(1e-3, 1));
     }
     /// The keys of what a law has beside its loops.
     void add_aids() {
-        const auto observer = [](auto& robot) -> auto& {
-            return law_of(robot).aids.observer;
+        using controllers::Aids;
+        const auto aids = in(
+            [](auto& robot) -> auto& { return law_of(robot); }, &Law::aids);
+        const auto observer = in(aids, &Aids::observer);
+        const auto feed_forward = in(aids, &Aids::feed_forward);
+        const auto place_in = [](auto optional, auto member) {
+            return in(in(
+                          optional, [](auto& part) -> auto& { return part_of(part); }),
+                      member);
         };
-        const auto feed_forward = [](auto& robot) -> auto& {
-            return law_of(robot).aids.feed_forward;
-        };
+        using Observer = typename decltype(Aids::observer)::value_type;
+        using FeedForward = typename decltype(Aids::feed_forward)::value_type;
         add(parameters::optional_group<Robot>(
             below("observer"), "observes forces and torques that the model does not explain, and counters them",
             observer));
-        add(parameters::number<Robot>(
-                below("observer.gain_1_s"), "1 / time constant of the estimates",
-                [observer](auto& robot) -> auto& { return part_of(observer(robot)).gain_1_s; })
-                .at_least(1e-3)
-                .at_most(1e4));
+        add(downwash::number(below("observer.gain_1_s"), "1 / time constant of the estimates",
+                             place_in(observer, &Observer::gain_1_s))
+                .between(1e-3, 1e4));
         add(parameters::optional_group<Robot>(
             below("feed_forward"), "divides rotor commands by the thrust ratios that a map has at the rotors",
             feed_forward));
-        add(parameters::number<Robot>(
-                below("feed_forward.offset_x_m"), "where the map has the surfaces, from where they are believed to be",
-                [feed_forward](auto& robot) -> auto& { return part_of(feed_forward(robot)).offset_x_m; })
-                .at_least(-100)
-                .at_most(100));
-        add(parameters::number<Robot>(
-                below("feed_forward.offset_z_m"), "the same along z",
-                [feed_forward](auto& robot) -> auto& { return part_of(feed_forward(robot)).offset_z_m; })
-                .at_least(-100)
-                .at_most(100));
+        add(downwash::number(below("feed_forward.offset_x_m"),
+                             "where the map has the surfaces, from where they are believed to be",
+                             place_in(feed_forward, &FeedForward::offset_x_m))
+                .between(-100, 100));
+        add(downwash::number(below("feed_forward.offset_z_m"), "the same along z",
+                             place_in(feed_forward, &FeedForward::offset_z_m))
+                .between(-100, 100));
     }
     Parameter<Robot> flag(std::string_view path, std::string_view description, bool Law::*member) const {
         return parameters::flag<Robot>(below(path), description, place(member));
@@ -370,16 +330,11 @@ void add_laws(Rows& rows, const std::variant<Laws...>* laws) {
 
 void add_controller(Rows& rows) {
     rows.push_back(group("controller", "the controllers of multirotor and arm"));
-    rows.push_back(
-        number(
-            "controller.rate_hz", "control ticks per second", [](auto& r) -> auto& { return r.controller.rate_hz; })
-            .at_least(10)
-            .at_most(1000));
-    rows.push_back(number(
-                       "controller.delay_s", "age of the state that the controller sees, at most three control ticks",
-                       [](auto& r) -> auto& { return r.controller.delay_s; })
-                       .at_least(0)
-                       .at_most(0.3));
+    append(rows, {number("controller.rate_hz", "control ticks per second", in(&Robot::controller, &Controller::rate_hz))
+                      .between(10, 1000),
+                  number("controller.delay_s", "age of the state that the controller sees, at most three control ticks",
+                         in(&Robot::controller, &Controller::delay_s))
+                      .between(0, 0.3)});
     add_laws(rows, static_cast<const ControlLaw*>(nullptr));
 }
 
@@ -396,7 +351,7 @@ void add_uncertainty(Rows& rows) {
     rows.push_back(parameters::optional_group<Robot>(
         "uncertainty",
         "what is not known exactly of this vehicle: defaults for problems that have an uncertainty; others ignore it",
-        [](auto& r) -> auto& { return r.uncertainty; }));
+        &Robot::uncertainty));
     for (const UncertaintyKey& key : uncertainty_keys()) {
         if (key.is_of_robot) {
             add_uncertainty_row(
@@ -408,9 +363,7 @@ void add_uncertainty(Rows& rows) {
 Rows all_rows() {
     Rows rows;
     rows.push_back(parameters::constant<Robot>("schema", "format and version of a robot file", "downwash/robot/v1"));
-    rows.push_back(parameters::identifier<Robot>(
-                       "name", "name of the robot", [](auto& r) -> auto& { return r.name; })
-                       .is_required());
+    rows.push_back(parameters::identifier<Robot>("name", "name of the robot", &Robot::name).is_required());
     add_multirotor(rows);
     add_rotors(rows);
     add_arm(rows);

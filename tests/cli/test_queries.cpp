@@ -64,8 +64,8 @@ TEST_CASE("Many points are read from a file or from standard input, after those 
 TEST_CASE("A grid that was built flies like its problem and tells what made it") {
     const Workspace work;
     const Words build = words("aeromap build", problem_file("open_air"));
-    work.succeed(build, "--step 0.25 -o map.vti");
-    const auto info = work.json("aeromap info map.vti");
+    work.succeed(build, "--step 0.25 -o map.csv");
+    const auto info = work.json("aeromap info map.csv");
     CHECK(info.at("kind") == "planar");
     CHECK(info.at("lateral_offsets_m").size() == 2);
     CHECK(info.at("x").at("step_m").get<double>() <= 0.25);

@@ -39,23 +39,33 @@ TEST_CASE("a measured grid is read whatever the order of its rows and columns") 
 
 TEST_CASE("plane coordinates belong to the plane of the reader unless the file names its own") {
     const std::string rows = "x_m,z_m,factor\n0,0,1\n1,0,2\n0,1,1\n1,1,2\n";
-    GridReading reading;
-    reading.plane = PlaneOfMotion({100, 0, 0}, 0);
-    CHECK(parse_factor_grid(rows, "g.csv", reading).contains({100.5, 0, 0.5}));
+    const PlaneOfMotion plane({100, 0, 0}, 0);
+    CHECK(parse_factor_grid(rows, "g.csv", plane).contains({100.5, 0, 0.5}));
     const FactorGrid own =
-        parse_factor_grid("# frame_origin_m: 0 50 0\n# frame_heading_rad: 0\n" + rows, "g.csv", reading);
+        parse_factor_grid("# frame_origin_m: 0 50 0\n# frame_heading_rad: 0\n" + rows, "g.csv", plane);
     CHECK(own.contains({0.5, 50, 0.5}));
     CHECK(own.provenance().empty());
     // World coordinates need no plane.
     const FactorGrid volume = parse_factor_grid(
-        "x_m,y_m,z_m,factor\n0,0,0,1\n1,0,0,2\n0,1,0,1\n1,1,0,2\n0,0,1,1\n1,0,1,2\n0,1,1,1\n1,1,1,2\n", "g.csv",
-        reading);
+        "x_m,y_m,z_m,factor\n0,0,0,1\n1,0,0,2\n0,1,0,1\n1,1,0,2\n0,0,1,1\n1,0,1,2\n0,1,1,1\n1,1,1,2\n", "g.csv", plane);
     CHECK(volume.factor({0.5, 0.5, 0.5}) == 1.5);
-    // Another column can be asked for.
-    reading.array = "thrust_ratio";
-    const FactorGrid grid =
-        parse_factor_grid("x_m,z_m,factor,thrust_ratio\n0,0,9,1\n1,0,9,2\n0,1,9,1\n1,1,9,2\n", "g.csv", reading);
-    CHECK(*grid.field("factor") == std::vector<double>{1, 2, 1, 2});
+}
+
+TEST_CASE("the CSV that ParaView saves is read, whatever the form of its names") {
+    // Of an image of 2 x 2 x 2 points, as Save Data writes it.
+    const FactorGrid grid = parse_factor_grid(
+        "\"factor\",\"Points:0\",\"Points:1\",\"Points:2\",\"rho\"\n1,0,0,0,9\n1.5,1,0,0,9\n2,0,2,0,9\n2.5,1,2,0,9\n"
+        "3,0,0,4,9\n3.5,1,0,4,9\n4,0,2,4,9\n4.5,1,2,4,9\n",
+        "g.csv");
+    CHECK_FALSE(grid.is_planar());
+    CHECK(grid.y() == GridAxis{0, 2, 2});
+    CHECK(*grid.field("factor") == std::vector<double>{1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5});
+}
+
+TEST_CASE("a VTK file is an error that says how to come to CSV") {
+    const std::string remedy = error_of(vti_text(FactorGrid(test::two_by_two())));
+    CHECK(remedy.starts_with("g.csv:1:1: VTK's XML is written by Downwash, not read: expected CSV"));
+    CHECK(remedy.find("Save Data") != std::string::npos);
 }
 
 TEST_CASE("a grid survives CSV to the bit, and its text to the byte") {
@@ -124,25 +134,22 @@ TEST_CASE("many errors do not make an endless message, many coordinates no large
     CHECK(error_of(text) == "g.csv: has 10000 rows for 100000000 combinations of its coordinates: expected one each");
 }
 
-TEST_CASE("a file of a byte more than two GiB is told by its size, whatever it is called") {
+TEST_CASE("a file of a byte more than two GiB is told by its size") {
     const test::ScratchFolder folder;
-    for (const char* name : {"huge.csv", "huge.vti"}) {
-        const auto file = folder / name;
-        write_file(file, "");
-        std::filesystem::resize_file(file, 2147483649);  // sparse: it takes no space
-        CHECK(test::error_of([&] { return read_factor_grid(file); }) ==
-              file.string() + " is larger than 2048 MiB: expected a smaller file");
-    }
+    const auto file = folder / "huge.csv";
+    write_file(file, "");
+    std::filesystem::resize_file(file, 2147483649);  // sparse: it takes no space
+    CHECK(test::error_of([&] { return read_factor_grid(file); }) ==
+          file.string() + " is larger than 2048 MiB: expected a smaller file");
 }
 
-TEST_CASE("files of grids are told apart by their first letter and written by their name") {
+TEST_CASE("files of grids are written by their name") {
     const test::ScratchFolder folder;
     test::Random random(4);
     const FactorGrid grid = test::any_grid(random);
-    for (const char* name : {"grid.csv", "grid.vti"}) {
-        write_factor_grid(folder / name, grid);
-        CHECK(test::is_same(read_factor_grid(folder / name), grid));
-    }
+    write_factor_grid(folder / "grid.csv", grid);
+    CHECK(test::is_same(read_factor_grid(folder / "grid.csv"), grid));
+    write_factor_grid(folder / "grid.vti", grid);
     CHECK(read_file(folder / "grid.vti", 5) == "<?xml");
     CHECK_THROWS_WITH(write_factor_grid(folder / "grid.txt", grid),
                       Catch::EndsWith("grid.txt ends in '.txt': expected .vti (VTK ImageData) or .csv"));
