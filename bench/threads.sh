@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Measures searches on one and two threads, simulates their schedule on up to 32, and writes bench/results/threads.md. About
-# four minutes. Run it on a machine that does nothing else.
+# Measures searches on one thread and on more, up to the processors of the machine, and writes bench/results/threads.md. About
+# three minutes on two processors. Run it on a machine that does nothing else.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 

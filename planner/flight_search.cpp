@@ -314,7 +314,6 @@ void FlightSearch::run_tree() {
                        [&](const Candidate& candidate) {
                            accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
                        }});
-    planner.record_to(options_.recorder);
     planner.set_max_iterations(settings.max_iterations);
     planner.set_stops_at_first_plan(options_.stop_at_first_solution);
     planner.set_known(options_.known_plan, options_.known_places);

@@ -11,7 +11,6 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/controllers/plan.hpp"
-#include "downwash/simulation/work_recorder.hpp"
 
 namespace downwash {
 
@@ -60,9 +59,6 @@ struct SolveOptions {
     std::shared_ptr<const AeroMap>
         map;  ///< reuses a map of the same problem, else std::invalid_argument; built when empty
     std::filesystem::path map_cache;  ///< folder in which maps are kept between runs; empty: nowhere
-    /// Notes the work of the search (rrt-star of flights): see work_recorder.hpp. Must outlive the search; nullptr:
-    /// nobody wants to know.
-    WorkRecorder* recorder = nullptr;
 };
 
 }  // namespace downwash

@@ -67,22 +67,12 @@ WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightM
       threads_(threads),
       pools_(goals_.size()) {}
 
-void WorldFlights::record_to(WorkRecorder* recorder) {
-    recorder_ = recorder;
-    for (const std::unique_ptr<FlightPool>& pool : pools_) {
-        if (pool != nullptr) {
-            pool->record_to(recorder);
-        }
-    }
-}
-
 FlightPool& WorldFlights::pool(std::size_t goal) {
     if (pools_[goal] == nullptr) {
         FlightRules rules = rules_of_execution();
         rules.finds_min_clearance = true;
         rules.is_over = [this] { return is_over_ && is_over_(); };
         pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules, &goals_[goal], threads_);
-        pools_[goal]->record_to(recorder_);
     }
     return *pools_[goal];
 }
@@ -188,7 +178,6 @@ void WorldFlights::touch(const std::vector<FlightJob>& jobs, const Plan& held, c
     if (touch == nullptr) {
         return;
     }
-    const ParallelScope recorded(recorder_, jobs.size());
     run_parallel(jobs.size(), threads_, [&](std::size_t i) {
         WorldFlight& flight = flights[world_of[i]];
         if (flight.rejection != Rejection::none || (is_over && is_over())) {

@@ -36,9 +36,6 @@ class DOWNWASH_EXPORT WorldFlights {
     WorldFlights(const WorldFlights&) = delete;
     WorldFlights& operator=(const WorldFlights&) = delete;
 
-    /// Notes every batch from the next one on; nullptr: none. @pre the recorder outlives it, or the next call
-    void record_to(WorkRecorder* recorder);
-
     /// Vehicles that have hovered at the problem's start, or that start there moving; nothing for those that do not
     /// stay there.
     [[nodiscard]] std::vector<std::optional<FlightState>> starts_in(std::span<const FlownWorld> worlds);
@@ -70,7 +67,6 @@ class DOWNWASH_EXPORT WorldFlights {
     std::shared_ptr<const AeroMap> map_;
     std::vector<Goal> goals_;
     int threads_;
-    WorkRecorder* recorder_ = nullptr;
     StopCondition is_over_;                           ///< of fly(), while it goes on
     std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
 };

@@ -55,10 +55,7 @@ ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const Fligh
                              std::shared_ptr<const AeroMap> map, const SolveOptions& options)
     : problem_(problem),
       flights_(problem, std::move(model), std::move(map), options.threads),
-      threads_(options.threads),
-      recorder_(options.recorder) {
-    flights_.record_to(recorder_);
-}
+      threads_(options.threads) {}
 
 std::vector<FlownWorld> search_worlds(const Problem& problem) {
     std::vector<FlownWorld> worlds;
@@ -139,7 +136,6 @@ void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vec
     }
     const std::vector<std::optional<FlightState>> starts = flights_.starts_in(worlds);
     const std::span<const Goal> goals = std::span(flights_.goals()).first(visits);
-    const ParallelScope recorded(recorder_, samples.size());
     run_parallel(samples.size(), threads_, [&](std::size_t i) {
         if (!starts[i]) {
             return;

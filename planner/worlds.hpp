@@ -68,7 +68,6 @@ class DOWNWASH_EXPORT ProblemWorlds {
     const Problem& problem_;
     WorldFlights flights_;
     int threads_;
-    WorkRecorder* recorder_;
     std::uint64_t screenings_ = 0;  ///< so far
 };
 

@@ -193,27 +193,6 @@ double FlightTreePlanner::work_beside(const Candidate& candidate) const {
     return std::clamp(parameters_.execution_tick_work * ticks, parameters_.round_work, most);
 }
 
-void FlightTreePlanner::record_to(WorkRecorder* recorder) {
-    recorder_ = recorder;
-    flights_.record_to(recorder);
-    refined_flights_.record_to(recorder);
-}
-
-/// A task of a round whose steps are noted.
-SteppedTask FlightTreePlanner::recorded(int number, SteppedTask task) const {
-    return [this, number, task = std::move(task)] {
-        WorkPiece step;
-        step.kind = WorkPiece::Kind::step;
-        step.task = number;
-        step.begin_s = WorkRecorder::now_s();
-        step.goes_on = task();
-        step.end_s = WorkRecorder::now_s();
-        const bool goes_on = step.goes_on;
-        recorder_->add(std::move(step));
-        return goes_on;
-    };
-}
-
 /// A round. Variants without direct flights have rounds of the same length, so that all search the same way.
 void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated) {
     std::optional<Proposal> proposed = stops_at_first_plan_ ? std::nullopt : proposal(parameters_.worthwhile_gain);
@@ -255,20 +234,7 @@ void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationC
             return goes_on;
         },
     };
-    const double begin_s = recorder_ != nullptr ? WorkRecorder::now_s() : 0;
-    if (recorder_ != nullptr) {
-        for (int i = 0; i < 3; ++i) {
-            tasks[i] = recorded(i, std::move(tasks[i]));
-        }
-    }
     run_side_by_side(tasks, std::min(threads_, 3));
-    if (recorder_ != nullptr) {
-        WorkPiece round;
-        round.kind = WorkPiece::Kind::round;
-        round.begin_s = begin_s;
-        round.end_s = WorkRecorder::now_s();
-        recorder_->add(std::move(round));
-    }
     if (proposed) {
         settle(std::move(*proposed));
     }

@@ -66,8 +66,6 @@ class FlightTreePlanner : public ompl::base::Planner {
         known_plan_ = std::move(plan);
         known_places_ = std::move(places);
     }
-    /// Notes the work of searches from now on; nullptr: none. The recorder must outlive the planner, or the next call.
-    void record_to(WorkRecorder* recorder);
     /// Called after every batch, or round, before its plans are executed.
     void set_observer(std::function<void()> observer) { observer_ = std::move(observer); }
 
@@ -94,7 +92,6 @@ class FlightTreePlanner : public ompl::base::Planner {
     void begin(const FlightPoint& start);
     void grow();
     void refine();
-    [[nodiscard]] SteppedTask recorded(int number, SteppedTask task) const;
     void go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated);
     void hand_to_refiner();
     [[nodiscard]] bool is_used_up() const noexcept { return max_iterations_ && iterations_ >= *max_iterations_; }
@@ -113,7 +110,6 @@ class FlightTreePlanner : public ompl::base::Planner {
     int threads_;
     CandidateHooks hooks_;
     std::function<void()> observer_;
-    WorkRecorder* recorder_ = nullptr;
     std::optional<std::uint64_t> max_iterations_;
     bool stops_at_first_plan_ = false;
     std::optional<Plan> known_plan_;

@@ -95,13 +95,6 @@ void PlannedFlights::use_threads(int threads) {
     }
 }
 
-void PlannedFlights::record_to(WorkRecorder* recorder) {
-    crew_.record_to(recorder);
-    if (world_crew_ != nullptr) {
-        world_crew_->record_to(recorder);
-    }
-}
-
 void PlannedFlights::forget() {
     joined_.clear();
     rejected_in_.assign(worlds_of_task(), 0);

@@ -35,8 +35,6 @@ class PlannedFlights {
 
     /// From its next batch on flies with so many of its threads. May be called from any thread.
     void use_threads(int threads);
-    /// Notes every batch; see FlightPool.
-    void record_to(WorkRecorder* recorder);
 
     /// Whether a reference is worth flying: no vehicle on it, level or, under a limit of thrust, tilted as the
     /// reference asks, collides or leaves the bounds, and a flight follows its reference to a few centimetres. Counts

@@ -106,7 +106,6 @@ struct FlightPool::Impl {
         for (int i = 0; i < lane_count; ++i) {
             flights.emplace_back(setting, lanes, i);
         }
-        LaneTicks lane_ticks{};
         for (;;) {
             for (FlightLane& lane : std::span(flights).first(lanes_used)) {
                 while (lane.is_free()) {
@@ -119,9 +118,6 @@ struct FlightPool::Impl {
             }
             const int busy = move_together(flights);
             if (busy == 0) {
-                if (recorder != nullptr) {
-                    note(lane_ticks);
-                }
                 return;
             }
             for (FlightLane& lane : flights) {
@@ -129,9 +125,7 @@ struct FlightPool::Impl {
                     lane.idle_like(flights.front());
                 }
             }
-            const double first_tick = lanes.tick[0];
             (busy > few_lanes ? kernels.for_many : kernels.for_few)(kernel_model, lanes, max_ticks_per_call);
-            lane_ticks[static_cast<std::size_t>(busy - 1)] += static_cast<std::int64_t>(lanes.tick[0] - first_tick);
             const bool is_interrupted = rules.is_over && rules.is_over();
             for (FlightLane& lane : flights) {
                 if (!lane.is_free()) {
@@ -158,35 +152,6 @@ struct FlightPool::Impl {
 
     /// See FlightPool::fly().
     void fly(std::span<FlightJob> all);
-
-    using LaneTicks = decltype(WorkPiece::lane_ticks);
-    static_assert(WorkPiece::max_lanes == lane_count);
-
-    void note(const LaneTicks& of_thread) {
-        const std::scoped_lock lock(mutex);
-        for (std::size_t i = 0; i < of_thread.size(); ++i) {
-            lane_ticks_of_batch[i] += of_thread[i];
-        }
-    }
-
-    /// Notes the batch that has just been flown. @param begin_s when it began
-    void record(double begin_s) {
-        WorkPiece piece;
-        piece.kind = WorkPiece::Kind::batch;
-        piece.begin_s = begin_s;
-        for (const FlightJob& job : jobs) {
-            std::int64_t ticks = 0;
-            for (const FlightLeg& leg : job.legs) {
-                ticks += leg.flight.ticks;
-            }
-            piece.job_ticks.push_back(ticks);
-        }
-        piece.lane_ticks = std::exchange(lane_ticks_of_batch, {});
-        piece.is_in_worlds = kernel_model.is_in_worlds;
-        piece.has_noise = kernel_model.has_noise;
-        piece.end_s = WorkRecorder::now_s();
-        recorder->add(std::move(piece));
-    }
 
     /// Waits for batches until the pool is closed.
     /// @param number of the thread, 1 for the first beside the calling one
@@ -237,8 +202,6 @@ struct FlightPool::Impl {
     std::size_t working = 0;              ///< of them, still at it
     std::exception_ptr failure;           ///< of a thread beside the calling one
     bool is_closed = false;
-    WorkRecorder* recorder = nullptr;
-    LaneTicks lane_ticks_of_batch{};  ///< noted so far
     std::vector<std::jthread> others;
 };
 
@@ -263,20 +226,12 @@ void FlightPool::use_threads(int threads) {
     impl_->allowed = std::min(static_cast<std::size_t>(threads - 1), impl_->others.size());
 }
 
-void FlightPool::record_to(WorkRecorder* recorder) {
-    impl_->recorder = recorder;
-}
-
 const FlightRules& FlightPool::rules() const noexcept {
     return impl_->rules;
 }
 
 void FlightPool::fly(std::span<FlightJob> jobs) {
-    const double begin_s = impl_->recorder != nullptr ? WorkRecorder::now_s() : 0;
     impl_->fly(jobs);
-    if (impl_->recorder != nullptr) {
-        impl_->record(begin_s);
-    }
 }
 
 void FlightPool::Impl::fly(std::span<FlightJob> all) {

@@ -7,7 +7,6 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/simulation/flight.hpp"
-#include "downwash/simulation/work_recorder.hpp"
 
 namespace downwash {
 
@@ -75,10 +74,6 @@ class DOWNWASH_EXPORT FlightPool {
     /// Sets how many of its threads the next batches use: at least 1, the calling one included. You may call this from
     /// any thread, also during a batch.
     void use_threads(int threads);
-
-    /// Notes every batch from the next one on; nullptr: none. Not to be called during a batch.
-    /// @pre the recorder outlives the pool, or the next call
-    void record_to(WorkRecorder* recorder);
 
     /// As given to the constructor.
     [[nodiscard]] const FlightRules& rules() const noexcept;
