@@ -34,14 +34,6 @@ struct State : VehicleState<T> {
     WorldMemory<T> world;  ///< the plain tick leaves it as it is
 };
 
-// With the narrow registers of every processor a tick with all that it calls in one place takes a sixth less; kernels
-// of wide ones flatten their whole loop instead. What sanitizers add would keep the compiler busy for minutes.
-#if defined(__AVX2__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define DOWNWASH_IN_ONE_PIECE
-#else
-#define DOWNWASH_IN_ONE_PIECE [[gnu::flatten]]
-#endif
-
 /// The controller's part of a tick. @param seen what it sees   @param[out] next what the law remembers
 template <class T, class Law, class Effect>
 [[gnu::always_inline]] inline void control(const TickModel& model, const Law& law, const dynamics::PlantState<T>& seen,
@@ -66,10 +58,9 @@ template <class T, class Law, class Effect>
 /// @param integrate callable (plant, state, motion, command, dt, factor) -> state: dynamics::OneStep or
 /// dynamics::RefinedStep
 template <class T, class Law, class Factor, class Integrate = dynamics::OneStep>
-DOWNWASH_IN_ONE_PIECE VehicleState<T> tick(const TickModel& model, const Law& law, const VehicleState<T>& state,
-                                           const dynamics::Motion<T>& motion, const BasicReferencePoint<T>& reference,
-                                           Factor&& factor, controllers::Actuation<T>& given,
-                                           const Integrate& integrate = {}) {
+VehicleState<T> tick(const TickModel& model, const Law& law, const VehicleState<T>& state,
+                     const dynamics::Motion<T>& motion, const BasicReferencePoint<T>& reference, Factor&& factor,
+                     controllers::Actuation<T>& given, const Integrate& integrate = {}) {
     VehicleState<T> next;
     control(model, law, state.plant, motion, state.memory, reference, factor, given, next.memory);
     if constexpr (requires { factor.sided(0, state.plant.q[0], state.plant.q[1]); }) {
@@ -85,10 +76,9 @@ DOWNWASH_IN_ONE_PIECE VehicleState<T> tick(const TickModel& model, const Law& la
 /// world without any difference it is the same to the last bit.
 /// @param noise standard normal numbers of this tick   @param effect see WorldSurroundings
 template <class T, class Law, class Effect, class Integrate = dynamics::OneStep>
-DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumbers<T>& world,
-                                             const T noise[noise_count], const State<T>& state,
-                                             const BasicReferencePoint<T>& reference, Effect&& effect,
-                                             controllers::Actuation<T>& given, const Integrate& integrate = {}) {
+State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumbers<T>& world, const T noise[noise_count],
+                       const State<T>& state, const BasicReferencePoint<T>& reference, Effect&& effect,
+                       controllers::Actuation<T>& given, const Integrate& integrate = {}) {
     const dynamics::PlantState<T> seen = seen_state(world, state.plant, state.world, noise);
     State<T> next;
     control(model, law, seen, dynamics::motion_at(model.plant, seen.q, seen.u), state.memory, reference, effect, given,
@@ -114,8 +104,6 @@ DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& 
     next.world = later(world, state.plant, state.world, noise);
     return next;
 }
-
-#undef DOWNWASH_IN_ONE_PIECE
 
 /// A single tick, where neither the law's type nor the motion of the state is at hand.
 template <class Factor, class Integrate = dynamics::OneStep>
