@@ -1,52 +1,17 @@
 #pragma once
 
 #include "downwash/dynamics/rigid_body.hpp"
+#include "downwash/dynamics/rotors.hpp"
 
 // The plant over one control tick: rigid bodies, rotors and the surface effect between command and force.
 
 namespace downwash::dynamics {
-
-/// The state of the plant.
-template <class T>
-struct PlantState {
-    T q[4];                  ///< x, z [m], pitch, arm [rad]
-    T u[4];                  ///< their time derivatives
-    T thrust_n[max_rotors];  ///< free-air thrust of each rotor; follows the command with the rotors' lag, if any
-    T energy_j;              ///< rotor and arm energy spent so far
-};
-
-/// The commands, constant over one tick.
-template <class T>
-struct PlantCommand {
-    T thrust_n[max_rotors];  ///< free-air thrust of each rotor, within its limits
-    T joint_torque_nm;
-};
 
 /// Shares total thrust F3 [N] and pitch torque T2 [N m] among the rotors: the least-squares commands, not yet clipped.
 template <class T, class P>
 void allocate(const BasicPlantModel<P>& model, T total_thrust_n, T pitch_torque_nm, T thrust_n[max_rotors]) {
     for (int i = 0; i < model.rotor_count; ++i) {
         thrust_n[i] = T(model.force_share[i]) * total_thrust_n + T(model.torque_share_1_m[i]) * pitch_torque_nm;
-    }
-}
-
-/// Total thrust along b3 [N] and pitch torque [N m] of rotors in aerodynamic effect (thesis figure C.3), and the
-/// horizontal force along x [N] by which walls push.
-template <class T>
-struct RotorWrench {
-    T thrust_n;
-    T pitch_torque_nm;
-    T wall_push_n = T(0);
-};
-
-/// The earliest rotor that is known to have the same thrust ratio K as rotor i, perhaps rotor i itself. A factor that
-/// knows says so by `same_as(rotor)`.
-template <class Factor>
-int rotor_with_factor_of(const Factor& factor, int rotor) {
-    if constexpr (requires { factor.same_as(rotor); }) {
-        return factor.same_as(rotor);
-    } else {
-        return rotor;
     }
 }
 
@@ -67,17 +32,6 @@ T wall_nearness(const BasicPlantModel<P>& model, Factor& factor, const PlanePoin
         return factor.wall_nearness(model.walls(), center.x, center.z);
     } else {
         return factor(model.walls(), center.x, center.z) - T(1);
-    }
-}
-
-/// The thrust that rotor i really gives in free air for a nominal one. A factor that knows another thrust coefficient
-/// says so by `thrust_scale(rotor)`.
-template <class T, class Factor>
-T free_air_thrust(const Factor& factor, int rotor, T nominal_n) {
-    if constexpr (requires { factor.thrust_scale(rotor); }) {
-        return factor.thrust_scale(rotor) * nominal_n;
-    } else {
-        return nominal_n;
     }
 }
 
@@ -123,18 +77,6 @@ RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& 
         }
     }
     return wrench;
-}
-
-/// Rotor power [W] of free-air thrusts: P = K_P sum T_i^1.5 (docs/model.md 3; thesis (4.2)).
-/// @param model of a plant in the plane or in space
-template <class T, class Model>
-T rotor_power(const Model& model, const T thrust_n[max_rotors]) {
-    T sum(0);
-    for (int i = 0; i < model.rotor_count; ++i) {
-        // A lag shorter than the step lets a stage of the integrator undershoot a thrust that vanishes.
-        sum = sum + lane::power_three_halves(lane::max(thrust_n[i], T(0)));
-    }
-    return T(model.power_coefficient_w_n1p5) * sum;
 }
 
 /// du/dt of the plant under the free-air thrusts of its rotors.

@@ -2,6 +2,7 @@
 
 #include "downwash/base/lane_math.hpp"
 #include "downwash/dynamics/plant_model.hpp"
+#include "downwash/dynamics/plant_state.hpp"
 
 // The two rigid bodies of the manipulator in closed form (docs/model.md 2; thesis C.1, A.6), one template over the lane
 // type. Coordinates q = (x, z, pitch, arm) [m, m, rad, rad], speeds u = dq/dt; M du/dt + c = Q.
@@ -165,12 +166,6 @@ T potential_energy(const BasicPlantModel<P>& model, const Attitude<T>& a, T z_m)
     const T arm_height = z_m + a.joint_z + T(model.arm_center_of_mass_m) * a.arm_z;
     return T(standard_gravity_m_s2) * (T(model.multirotor_mass_kg) * z_m + T(model.arm_mass_kg) * arm_height);
 }
-
-/// A point of the plane [m], or another vector in it.
-template <class T>
-struct PlanePoint {
-    T x, z;
-};
 
 /// Adds the drag of both bodies in moving air to generalised forces Q [N, N, N m, N m] (docs/model.md 2.1). Along the
 /// arm the force is integrated with the two-point Gauss rule: exact where the stream crosses all of it from one side.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "downwash/dynamics/flight_step.hpp"
+#include "downwash/dynamics/rotors.hpp"
 #include "downwash/dynamics/space_body.hpp"
 
 // The plant in space over one control tick: bodies, rotors anywhere and tilted, the surface effect as a function.
@@ -44,7 +44,7 @@ LaneVector<T> rotor_spin_of(const BasicSpaceModel<P, n>& model, const T thrust_n
 /// tick with a map by a half).
 /// @param position_m of the multirotor's centre of mass, world   @param thrust_n of every rotor in free air [N]
 /// @param factor callable (rotor, x_m, y_m, z_m) -> K at the hub of that rotor in the world; it may know
-/// `same_as(rotor)` and `thrust_scale(rotor)`, see flight_step.hpp
+/// `same_as(rotor)` and `thrust_scale(rotor)`, see rotors.hpp
 template <class T, int n, class P, class Factor>
 [[gnu::noinline]] SpaceWrench<T> rotor_wrench(const BasicSpaceModel<P, n>& model, const LaneRotation<T>& attitude,
                                               const LaneVector<T>& position_m, const T thrust_n[max_rotors],

@@ -1,38 +1,17 @@
 #pragma once
 
 #include <type_traits>
-#include <variant>
 
-#include "downwash/controllers/control_law.hpp"
-#include "downwash/dynamics/flight_step.hpp"
-#include "downwash/effects/sided_factor.hpp"
+#include "downwash/controllers/control.hpp"
 #include "downwash/simulation/read_effect.hpp"
-#include "downwash/simulation/world_numbers.hpp"
+#include "downwash/simulation/surroundings.hpp"
+#include "downwash/simulation/tick_model.hpp"
+#include "downwash/simulation/vehicle_state.hpp"
+#include "downwash/simulation/world_tick.hpp"
 
 // One tick of the closed loop: the one definition that planning, execution, studies and benchmarks share.
 
 namespace downwash::simulation {
-
-/// Everything about the vehicle that does not change in flight.
-struct TickModel {
-    PlantModel plant;  ///< what the controller knows, and what flies unless somebody says otherwise
-    FlownLaw law;
-    double tick_s;  ///< control period, 1 / rate_hz
-    TiltLoss tilt_loss = {};
-};
-
-/// What the plain tick changes: bodies, rotor lag, energy, and every integrator. Nothing but T: see base/numbers.hpp.
-template <class T>
-struct VehicleState {
-    dynamics::PlantState<T> plant;
-    controllers::LawMemory<T> memory;
-};
-
-/// Everything about the vehicle that changes in flight, with what its world remembers. Nothing but T.
-template <class T>
-struct State : VehicleState<T> {
-    WorldMemory<T> world;  ///< the plain tick leaves it as it is
-};
 
 /// The controller's part of a tick. @param seen what it sees   @param[out] next what the law remembers
 template <class T, class Law, class Effect>

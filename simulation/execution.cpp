@@ -109,7 +109,7 @@ class Recorder {
         }
         simulation::add_tick(execution_, plant_, before, next);
         const Rejection rejection = judge(next, next_reference);
-        execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
+        execution_.clearance_integral += model_.tick().tick_s * clearance_density(clearance_m_);
         return rejection;
     }
 

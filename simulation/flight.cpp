@@ -6,6 +6,7 @@
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/flight_rules.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
 namespace {
@@ -23,7 +24,7 @@ Rejection broken_rule(const FlightModel& model, const AeroMap* map, const Flight
         return static_cast<Rejection>(static_cast<int>(broken));
     }
     const PlanarPose pose = among_obstacles(pose_of(state), world);
-    if (map != nullptr && !simulation::is_flyable(model, *map, pose)) {
+    if (map != nullptr && !is_flyable(model, *map, pose)) {
         return Rejection::flyable_area;
     }
     if (model.collisions().is_nearer_than(pose, rules.margin_m) ||
@@ -51,7 +52,7 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
             const double clearance_m = model.collisions().clearance_m(among_obstacles(pose_of(next), world));
             flight.min_clearance_m = std::min(flight.min_clearance_m, clearance_m);
             if (rejection == Rejection::none && rules.measures_clearance) {
-                flight.clearance_integral += model.tick().tick_s * simulation::clearance_density(clearance_m);
+                flight.clearance_integral += model.tick().tick_s * clearance_density(clearance_m);
             }
         }
         return rejection;

@@ -58,11 +58,16 @@ struct FlightRules {
     bool finds_min_clearance = false;  ///< of every flight, for certificates
 };
 
+/// Integrand of the objective `clearance` [1/m].
+[[nodiscard]] inline double clearance_density(double clearance_m) noexcept {
+    return 1 / ((clearance_m > 0 ? clearance_m : 0) + 0.1);
+}
+
 /// The outcome of a flight along one segment.
 struct SegmentFlight : FlightSums {
     Rejection rejection = Rejection::none;
     std::int64_t ticks = 0;         ///< simulated, the rejected one included
-    double clearance_integral = 0;  ///< integral of dt / (clearance + 0.1 m) [s/m], when measured
+    double clearance_integral = 0;  ///< integral of clearance_density() over time [s/m], when measured
     /// Least clearance on control ticks, when wanted [m]: exact in fly(); in a FlightPool to min_clearance_error_m,
     /// from the beginning of the job on.
     double min_clearance_m = std::numeric_limits<double>::infinity();

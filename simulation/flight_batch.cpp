@@ -13,7 +13,6 @@
 #include "downwash/base/parallel.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
 #include "downwash/simulation/flight_lane.hpp"
-#include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/noise.hpp"
 
 namespace downwash {

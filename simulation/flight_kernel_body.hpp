@@ -6,6 +6,7 @@
 #include "downwash/base/lane_pack.hpp"
 //
 #include "downwash/controllers/quintic.hpp"
+#include "downwash/simulation/closed_loop.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
 #include "downwash/simulation/noise.hpp"
 
@@ -236,7 +237,7 @@ fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks) {
 /// The kernel of a law with its aids; of a law that has none, its own.
 template <class Law>
 constexpr FlightKernel aided_kernel() {
-    if constexpr (controllers::can_be_aided<Law>) {
+    if constexpr (controllers::CanBeAided<Law>) {
         return fly_lanes<controllers::Aided<Law>>;
     } else {
         return fly_lanes<Law>;

@@ -11,7 +11,8 @@
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
-#include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/flight_rules.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash::simulation {
 

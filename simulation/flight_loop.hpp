@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "downwash/simulation/closed_loop.hpp"
 #include "downwash/simulation/flight.hpp"
 #include "downwash/simulation/map_effect.hpp"
 #include "downwash/simulation/noise.hpp"
@@ -20,32 +21,6 @@ struct DirectFactor {
         return model.sided_factor(rotor, x_m, z_m);
     }
 };
-
-/// Integrand of the objective `clearance` [1/m].
-inline double clearance_density(double clearance_m) noexcept {
-    return 1 / ((clearance_m > 0 ? clearance_m : 0) + 0.1);
-}
-
-/// Whether a property holds at the hub of every rotor, given as (rotor, x_m, z_m) in the plane.
-template <class Predicate>
-bool all_rotors(const FlightModel& model, const PlanarPose& pose, const Predicate& predicate) {
-    const PlantModel& plant = model.tick().plant;
-    const auto attitude = dynamics::attitude(plant, pose.pitch_rad, pose.arm_rad);
-    for (int i = 0; i < plant.rotor_count; ++i) {
-        const auto hub = dynamics::rotor_position(plant, attitude, pose.x_m, pose.z_m, i);
-        if (!predicate(i, hub.x, hub.z)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/// Whether every rotor of a vehicle at this pose is inside the flyable area of a map.
-inline bool is_flyable(const FlightModel& model, const AeroMap& map, const PlanarPose& pose) {
-    return all_rotors(model, pose, [&](int rotor, double x_m, double z_m) {
-        return map.is_flyable(model.rotor_layer(rotor), x_m, z_m);
-    });
-}
 
 /// One tick of a vehicle in a world, without its noise and gusts; surface effects are the nominal ones.
 /// @param factor,integrate see tick()   @param in nullptr: the nominal world

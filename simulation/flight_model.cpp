@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "downwash/aeromap/map_cache.hpp"
+#include "downwash/controllers/control.hpp"
 
 namespace downwash {
 namespace {

@@ -8,15 +8,13 @@
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/scene/collision_checker.hpp"
-#include "downwash/simulation/closed_loop.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/robot.hpp"
+#include "downwash/simulation/tick_model.hpp"
+#include "downwash/simulation/vehicle_state.hpp"
 #include "downwash/simulation/world.hpp"
 
 namespace downwash {
-
-/// The state of a flight, one lane wide.
-using FlightState = simulation::State<double>;
 
 /// A robot in its world: everything that a flight needs and never changes. Safe to share between threads.
 class DOWNWASH_EXPORT FlightModel {

@@ -3,10 +3,11 @@
 #include <cmath>
 #include <limits>
 
-#include "downwash/simulation/closed_loop.hpp"
+#include "downwash/base/lane_math.hpp"
 #include "downwash/simulation/flight.hpp"
 
-// The rules of a planned flight that need nothing but the numbers of one tick, one template over the lane type.
+// The rules and sums of a planned flight that need nothing but the numbers of one tick, one template over the lane
+// type.
 
 namespace downwash::simulation {
 
@@ -77,6 +78,16 @@ T broken_rule(const RuleLimits& limits, T saturation, const VehicleState<T>& sta
     const T beyond_stability =
         lane::max(instability(state, error_m), lane::abs(state.plant.u[2]) - T(limits.max_pitch_rate_rad_s));
     return lane::select(beyond_stability > T(0), number_of(Rejection::unstable), rejection);
+}
+
+/// Adds what one tick contributes.
+template <class T>
+void add_tick(BasicFlightSums<T>& sums, const PlantModel& plant, const VehicleState<T>& before,
+              const VehicleState<T>& next) {
+    const T dx = next.plant.q[0] - before.plant.q[0];
+    const T dz = next.plant.q[1] - before.plant.q[1];
+    const T da = T(0.5 * plant.arm_length_m) * (next.plant.q[3] - before.plant.q[3]);
+    sums.length_m = sums.length_m + lane::sqrt(dx * dx + dz * dz + da * da);
 }
 
 }  // namespace downwash::simulation

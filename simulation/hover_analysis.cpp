@@ -9,6 +9,7 @@
 #include "downwash/base/portable_math.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_trim.hpp"
+#include "downwash/simulation/rotor_hubs.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
@@ -166,9 +167,7 @@ HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, do
         return analysis;
     }
     const TickModel& tick = model.tick();
-    const auto attitude = dynamics::attitude(tick.plant, 0.0, arm_rad);
-    const LinearEffect effect(tick.plant, attitude, x_m, z_m, simulation::DirectFactor{model},
-                              controllers::aids_of(tick.law).feed_forward);
+    const LinearEffect effect(model, pose);
     analysis.trim = simulation::hover_trim(model.robot(), tick, effect, model.state_at(pose));
     analysis.verdict = HoldVerdict::no_equilibrium;
     if (analysis.trim.limit != HoldLimit::none) {

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "downwash/controllers/control.hpp"
+#include "downwash/simulation/read_effect.hpp"
+
 namespace downwash::simulation {
 namespace {
 

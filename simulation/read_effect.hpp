@@ -1,6 +1,6 @@
 #pragma once
 
-#include "downwash/simulation/world_numbers.hpp"
+#include "downwash/simulation/surroundings.hpp"
 
 namespace downwash::simulation {
 

@@ -4,6 +4,7 @@
 
 #include "downwash/simulation/map_effect.hpp"
 #include "downwash/simulation/touch_flight.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
 
@@ -28,7 +29,7 @@ TouchFlight fly_touch(const FlightModel& model, const AeroMap* map, const Touch&
         }
         pose_before = off;
         before_m = clearance_m;
-        return map != nullptr && !simulation::is_flyable(model, *map, pose) ? Rejection::flyable_area : Rejection::none;
+        return map != nullptr && !is_flyable(model, *map, pose) ? Rejection::flyable_area : Rejection::none;
     };
     const auto fly = [&](auto&& effect) {
         flight.rejection =

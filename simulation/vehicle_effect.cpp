@@ -1,6 +1,7 @@
 #include "downwash/simulation/vehicle_effect.hpp"
 
 #include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/rotor_hubs.hpp"
 
 namespace downwash {
 
@@ -30,6 +31,12 @@ VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose) {
 bool is_flyable(const FlightModel& model, const PlanarPose& pose) {
     return simulation::all_rotors(model, pose, [&](int rotor, double x_m, double z_m) {
         return model.effect(rotor).is_flyable(model.plane().to_world(x_m, model.rotor_lateral_m(rotor), z_m));
+    });
+}
+
+bool is_flyable(const FlightModel& model, const AeroMap& map, const PlanarPose& pose) {
+    return simulation::all_rotors(model, pose, [&](int rotor, double x_m, double z_m) {
+        return map.is_flyable(model.rotor_layer(rotor), x_m, z_m);
     });
 }
 

@@ -6,7 +6,7 @@
 
 #include "downwash/controllers/lyapunov.hpp"
 #include "downwash/controllers/pid.hpp"
-#include "downwash/dynamics/ceiling_contact.hpp"
+#include "downwash/dynamics/ceiling_tick.hpp"
 #include "downwash/dynamics/quadrotor.hpp"
 #include "downwash/effects/effect_curve.hpp"
 #include "downwash/simulation/noise.hpp"

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "downwash/controllers/lyapunov.hpp"
-#include "downwash/dynamics/ceiling_contact.hpp"
+#include "downwash/dynamics/ceiling_tick.hpp"
 #include "downwash/simulation/noise.hpp"
 
 namespace downwash::studies {

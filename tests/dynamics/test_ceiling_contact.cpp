@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "downwash/dynamics/ceiling_contact.hpp"
+#include "downwash/dynamics/ceiling_tick.hpp"
 #include "downwash/dynamics/quadrotor.hpp"
 #include "downwash/dynamics/space_energy.hpp"
 #include "random_space_plant.hpp"

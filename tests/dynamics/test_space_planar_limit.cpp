@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "../support/test_robot.hpp"
+#include "downwash/dynamics/flight_step.hpp"
 #include "random_space_plant.hpp"
 
 // With one joint across the plane of motion the plant in space is the planar one.

@@ -4,6 +4,7 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/search/flight_point.hpp"
 #include "downwash/search/planned_flights.hpp"
+#include "downwash/simulation/closed_loop.hpp"
 
 using namespace downwash;
 using planning::FlightStatistics;

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "downwash/simulation/closed_loop.hpp"
 #include "hover_scenes.hpp"
 
 // The cascaded PID in closed loop.

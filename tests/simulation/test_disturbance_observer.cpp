@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "downwash/controllers/control.hpp"
 #include "hover_scenes.hpp"
 
 // Laws that observe what pushes the vehicle, on a plant that is pushed by forces of the test's own.
@@ -68,7 +69,7 @@ class Pushed {
     void fly_aided(const Use& use) const {
         std::visit(
             [&]<class Law>(const Law& own) {
-                if constexpr (controllers::can_be_aided<Law>) {
+                if constexpr (controllers::CanBeAided<Law>) {
                     use(controllers::Aided<Law>{own});
                 }
             },

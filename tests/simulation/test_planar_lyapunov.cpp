@@ -3,7 +3,7 @@
 #include <random>
 
 #include "downwash/controllers/lyapunov_coordinate.hpp"
-#include "downwash/dynamics/flight_step.hpp"
+#include "downwash/simulation/closed_loop.hpp"
 #include "hover_scenes.hpp"
 
 // The Lyapunov laws in the plane of motion, with the arm.

@@ -8,6 +8,7 @@
 
 #include "../support/mujoco_world.hpp"
 #include "../support/test_robot.hpp"
+#include "downwash/controllers/control.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"

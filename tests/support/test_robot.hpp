@@ -67,7 +67,7 @@ inline const ModelInversion& gains_of(const Robot& robot) {
 inline void give_aids(ControlLaw& law, const controllers::Aids& aids) {
     std::visit(
         [&]<class Law>(Law& own) {
-            if constexpr (controllers::can_be_aided<Law>) {
+            if constexpr (controllers::CanBeAided<Law>) {
                 own.aids = aids;
             }
         },
