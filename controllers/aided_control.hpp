@@ -12,13 +12,13 @@
 namespace downwash::controllers {
 
 /// What an aided law knows in one tick: see Unaided for what a law asks.
-template <class T, class Map>
+template <class T, dynamics::ThrustRatios<T> Map>
 class Aid {
  public:
     /// @param motion nominal motion of the state that the law sees   @param observed memory of the observer
-    /// @param map see read_ratios()
+    /// @param map what the feed-forward reads
     Aid(const Aids& aids, const PlantModel& nominal, const dynamics::PlantState<T>& seen,
-        const dynamics::Motion<T>& motion, const T observed[4], double tick_s, Map& map)
+        const dynamics::Motion<T>& motion, const T observed[4], double tick_s, const Map& map)
         : aids_(aids), motion_(motion), map_(map) {
         if (aids.observer) {
             observation_.emplace(*aids.observer, tick_s, nominal, seen, motion, observed);
@@ -63,7 +63,7 @@ class Aid {
  private:
     const Aids& aids_;
     const dynamics::Motion<T>& motion_;
-    Map& map_;
+    const Map& map_;
     std::optional<Observation<T>> observation_;
     dynamics::Motion<T> explained_;
     dynamics::RotorWrench<T> wrench_{T(0), T(0)};  ///< that the law believes to act in mid-tick
@@ -93,7 +93,7 @@ template <class T, class Map>
 Aided<Law>::Memory<T> Aided<Law>::control(const PlantModel& nominal, const dynamics::PlantState<T>& seen,
                                           const dynamics::Motion<T>& motion, const Memory<T>& memory,
                                           const BasicReferencePoint<T>& reference, double tick_s, Actuation<T>& given,
-                                          Map& map) const {
+                                          const Map& map) const {
     Aid<T, Map> aid(law.aids, nominal, seen, motion, memory.observed, tick_s, map);
     Memory<T> next;
     next.loops = law.control(nominal, seen, motion, memory.loops, reference, tick_s, given, aid);

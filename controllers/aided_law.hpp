@@ -48,11 +48,11 @@ struct Aided {
     template <class T>
     void hold_estimate(const Memory<T>& before, const T change[4], double tick_s, Memory<T>& now) const;
 
-    /// One control step: that of the law. @param map see read_ratios()
+    /// One control step: that of the law. @param map what its feed-forward reads, dynamics::ThrustRatios
     template <class T, class Map>
     Memory<T> control(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,
                       const Memory<T>& memory, const BasicReferencePoint<T>& reference, double tick_s,
-                      Actuation<T>& given, Map& map) const;
+                      Actuation<T>& given, const Map& map) const;
 
     /// How the law asks for the same commands for ever. An observer settles at what is missing in the balance c = Q +
     /// D.

@@ -46,15 +46,18 @@ CeilingLoad<T> ceiling_load(const CeilingContact& contact, const T* q, const T* 
 }
 
 /// Surroundings with a ceiling to touch: what they are without it, and the load.
-template <class Factor>
-struct UnderCeiling : Factor {
-    const CeilingContact* contact;
-    UnderCeiling(const Factor& factor, const CeilingContact& ceiling) : Factor(factor), contact(&ceiling) {}
+template <SpaceSurroundings<double> Around>
+struct UnderCeiling {
+    const Around& around;
+    const CeilingContact& contact;
 
-    /// See accelerations() in space.
-    template <class T>
-    SpaceWrench<T> load(const T* q, const T* u, const LaneRotation<T>& attitude) const {
-        return ceiling_load(*contact, q, u, attitude).wrench;
+    double thrust_ratio(int rotor, const LaneVector<double>& hub_m) const { return around.thrust_ratio(rotor, hub_m); }
+    void add_load(const double* q, const double* u, const LaneRotation<double>& attitude,
+                  SpaceWrench<double>& wrench) const {
+        around.add_load(q, u, attitude, wrench);
+        const SpaceWrench<double> load = ceiling_load(contact, q, u, attitude).wrench;
+        wrench.force_n = wrench.force_n + load.force_n;
+        wrench.torque_nm = wrench.torque_nm + load.torque_nm;
     }
 };
 
@@ -75,11 +78,11 @@ struct ContactTick {
 };
 
 /// The state after `dt_s` under a ceiling, in as many Runge-Kutta steps as contact needs: one where nothing can touch.
-/// @param dt_s a tick, at most 0.02 s   @param factor a class type, as for rotor_wrench() in space
-template <int n, class Factor>
+/// @param dt_s a tick, at most 0.02 s
+template <int n, SpaceSurroundings<double> Around>
 ContactTick<n> contact_tick(const SpaceModel<n>& model, const CeilingContact& contact,
                             const SpaceState<double, n>& state, const SpaceCommand<double, n>& command, double dt_s,
-                            const Factor& factor, const ContactSteps& steps = {}) {
+                            const Around& around, const ContactSteps& steps = {}) {
     const auto load_at = [&](const SpaceState<double, n>& at) {
         return ceiling_load(contact, at.q, at.u, rotation_of(at.q + 3));
     };
@@ -108,11 +111,11 @@ ContactTick<n> contact_tick(const SpaceModel<n>& model, const CeilingContact& co
                              max_arm_m * lane::sqrt(u[3] * u[3] + u[4] * u[4] + u[5] * u[5]);
     constexpr double max_acceleration_m_s2 = 100;
     if (load.highest_m + (speed_m_s + 0.5 * max_acceleration_m_s2 * dt_s) * dt_s < contact.ceiling_m) {
-        tick.state = space_step(model, state, command, dt_s, factor);
+        tick.state = space_step(model, state, command, dt_s, around);
         tick.steps = 1;
         return tick;
     }
-    const UnderCeiling<Factor> surroundings(factor, contact);
+    const UnderCeiling<Around> surroundings{around, contact};
     for (double rest_s = dt_s; rest_s > 0;) {
         // Friction decays slip at mu N / v_slip times the mobility.
         const double slip_decay_1_s = contact.friction * load.normal_n * slip_mobility / contact.slip_speed_m_s;

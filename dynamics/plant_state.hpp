@@ -40,6 +40,8 @@ struct RotorWrench {
 
 // For headers that only hand them on; rigid_body.hpp defines them.
 template <class T>
+struct Attitude;
+template <class T>
 struct Motion;
 template <class T>
 struct EquationsOfMotion;

@@ -203,12 +203,23 @@ PlanePoint<T> end_effector_position(const BasicPlantModel<P>& model, const Attit
     return {x_m + a.joint_x + length * a.arm_x, z_m + a.joint_z + length * a.arm_z};
 }
 
+/// A point of the multirotor, given in its body frame, in the plane [m].
+template <class T>
+PlanePoint<T> body_point(const Attitude<T>& a, T x_m, T z_m, T body_x_m, T body_z_m) {
+    return {x_m + a.cos_pitch * body_x_m + a.sin_pitch * body_z_m,
+            z_m - a.sin_pitch * body_x_m + a.cos_pitch * body_z_m};
+}
+
 /// The hub of rotor i in the plane [m]; its lateral offset does not change.
 template <class T, class P>
 PlanePoint<T> rotor_position(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m, int rotor) {
-    const T bx(model.rotor_x_m[rotor]);
-    const T bz(model.rotor_z_m[rotor]);
-    return {x_m + a.cos_pitch * bx + a.sin_pitch * bz, z_m - a.sin_pitch * bx + a.cos_pitch * bz};
+    return body_point(a, x_m, z_m, T(model.rotor_x_m[rotor]), T(model.rotor_z_m[rotor]));
+}
+
+/// The centre between all hubs in the plane [m].
+template <class T, class P>
+PlanePoint<T> center_position(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m) {
+    return body_point(a, x_m, z_m, T(model.center_x_m), T(model.center_z_m));
 }
 
 }  // namespace downwash::dynamics

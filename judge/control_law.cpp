@@ -314,7 +314,7 @@ ControlLaw::Read ControlLaw::read(const Motion& seen, const Surroundings& believ
             read.ratio[k] = std::max(believed.thrust_ratio(i, hub, seen.pitch_rad), 0.1);
         }
         const Planar center = from + from_body(believed_.hub_center_m, seen.pitch_rad);
-        read.fountain = believed.fountain(believed_.rotor_count, center, seen.pitch_rad);
+        read.fountain = believed.fountain(center, seen.pitch_rad);
     }
     return read;
 }

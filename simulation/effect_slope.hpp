@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+
+#include "downwash/simulation/effect_field.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 // The surface effect around one configuration, as values and slopes: all that the stability of a hover depends on.
@@ -10,16 +13,17 @@ namespace downwash::simulation {
 /// over its disc.
 inline constexpr double slope_step_m = 1e-3;
 
-/// A surface effect near one configuration, linear in the position of every rotor.
-class LinearEffect {
+/// A surface effect near one pose, linear in the position of every rotor. It counts as that of the ground.
+class LinearEffect final : public FlightEffect {
  public:
-    /// The tangent of the direct effect at the rotors of a vehicle at a pose, and of what its control law reads. Where
-    /// K has a kink (a disc at its cap) the slope is the mean of both sides over slope_step_m.
+    /// The tangent of the direct effect at the rotors of a level vehicle at a pose, and of what its control law reads.
+    /// Where K has a kink (a disc at its cap) the slope is the mean of both sides over slope_step_m.
     LinearEffect(const FlightModel& model, const PlanarPose& pose);
 
-    double operator()(int rotor, double x_m, double z_m) const noexcept { return acting_[rotor](x_m, z_m); }
-    /// What the law reads there; see ReadEffect.
-    [[nodiscard]] double read(int rotor, double x_m, double z_m) const noexcept { return read_[rotor](x_m, z_m); }
+    SidedFactor<double> at_rotor(int rotor, double x_m, double z_m) override { return {rotor_[rotor](x_m, z_m), 1}; }
+    SidedFactor<double> at_body(double x_m, double z_m) override { return {body_(x_m, z_m), 1}; }
+    double wall_nearness(double x_m, double z_m) override { return walls_(x_m, z_m) - 1; }
+    LinearEffect& as_read() override { return read_ ? *read_ : *this; }
 
  private:
     struct Tangent {
@@ -29,9 +33,13 @@ class LinearEffect {
         }
     };
 
-    // Two more for what acts on the body.
-    Tangent acting_[max_rotors + 2] = {};
-    Tangent read_[max_rotors + 2] = {};
+    /// @param offset_x_m,offset_z_m how far from the vehicle's own places the tangents are taken, backwards
+    LinearEffect(const FlightModel& model, const PlanarPose& pose, double offset_x_m, double offset_z_m);
+
+    Tangent rotor_[max_rotors] = {};
+    Tangent body_ = {};
+    Tangent walls_ = {};                  ///< of 1 more than how near they are
+    std::unique_ptr<LinearEffect> read_;  ///< where a law reads elsewhere
 };
 
 }  // namespace downwash::simulation

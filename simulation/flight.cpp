@@ -5,7 +5,8 @@
 
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/flight_loop.hpp"
-#include "downwash/simulation/flight_rules.hpp"
+#include "downwash/simulation/map_effect.hpp"
+#include "downwash/simulation/rule_checks.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
@@ -34,9 +35,9 @@ Rejection broken_rule(const FlightModel& model, const AeroMap* map, const Flight
     return Rejection::none;
 }
 
-template <class Factor>
 SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                       const ReferenceSegment& segment, FlightState& state, const FlightWorld& in, Factor&& factor) {
+                       const ReferenceSegment& segment, FlightState& state, const FlightWorld& in,
+                       simulation::FlightEffect& effect) {
     const simulation::RuleLimits limits = simulation::rule_limits(rules, model.robot().arm);
     const FlownWorld* const world = flown_world(model, in.world);
     SegmentFlight flight;
@@ -57,10 +58,7 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
         }
         return rejection;
     };
-    flight.rejection = world == nullptr
-                           ? simulation::fly_ticks(model.tick(), segment, factor, dynamics::OneStep{}, state, after)
-                           : simulation::fly_ticks(model.tick(), *world, in.first_tick, segment, factor,
-                                                   dynamics::OneStep{}, state, after);
+    flight.rejection = simulation::FlightLoop(model.tick(), world, effect).fly(in.first_tick, segment, state, after);
     return flight;
 }
 
@@ -77,10 +75,12 @@ bool is_stable(const FlightState& state, const ReferencePoint& reference) {
 SegmentFlight fly(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
                   const ReferenceSegment& segment, FlightState& state, const FlightWorld& in) {
     if (map == nullptr) {
-        return fly_with(model, map, rules, segment, state, in, simulation::NoEffect{});
+        simulation::FlightEffectOf effect{simulation::NoEffect{}};
+        return fly_with(model, map, rules, segment, state, in, effect);
     }
     const simulation::RotorMaps maps = simulation::rotor_maps(model, *map);
-    return fly_with(model, map, rules, segment, state, in, simulation::MapEffect<double>(maps));
+    simulation::FlightEffectOf effect{simulation::MapEffect<double>(maps)};
+    return fly_with(model, map, rules, segment, state, in, effect);
 }
 
 }  // namespace downwash
