@@ -33,7 +33,7 @@ MapLayer shown_layer(const PlotRequest& request, const Problem& problem, const s
     const int rotor = rotor_option(request.rotor, static_cast<int>(problem.robot.rotors.positions_m.size()));
     const EffectLayers layers =
         effect_layers(problem.robot.rotors, scene, shown_settings(request, problem.aero), problem.plane.heading_rad());
-    MapLayer layer = layers.layers[layers.layer_of[static_cast<std::size_t>(rotor)]];
+    MapLayer layer = layers.layers[layers.of_rotor[static_cast<std::size_t>(rotor)]];
     layer.lateral_m = request.lateral_m.value_or(layer.lateral_m);
     return layer;
 }

@@ -1,78 +1,26 @@
 #pragma once
 
-#include <optional>
+#include <concepts>
 
 #include "downwash/controllers/actuation.hpp"
-#include "downwash/controllers/disturbance_observer.hpp"
-#include "downwash/controllers/feed_forward.hpp"
+#include "downwash/controllers/aids.hpp"
 #include "downwash/controllers/reference_point.hpp"
 #include "downwash/controllers/rest.hpp"
+#include "downwash/dynamics/plant_model.hpp"
 
 // A control law with an observer, a feed-forward, or both. A type of its own: laws without them are compiled as if
-// there were none. One template over the lane type.
+// there were none. aided_control.hpp has its arithmetic, one template over the lane type.
 
 namespace downwash::controllers {
 
-/// What an aided law knows in one tick: see Unaided for what a law asks.
-template <class T, class Map>
-class Aid {
- public:
-    /// @param motion nominal motion of the state that the law sees   @param observed memory of the observer
-    /// @param map see read_ratios()
-    Aid(const Aids& aids, const PlantModel& nominal, const dynamics::PlantState<T>& seen,
-        const dynamics::Motion<T>& motion, const T observed[4], double tick_s, Map& map)
-        : aids_(aids), motion_(motion), map_(map) {
-        if (aids.observer) {
-            observation_.emplace(*aids.observer, tick_s, nominal, seen, motion, observed);
-            explained_ = observation_->explained(motion);
-        }
-    }
-
-    [[nodiscard]] const dynamics::Motion<T>& explained(const dynamics::Motion<T>& motion) const {
-        return observation_ ? explained_ : motion;
-    }
-    template <class>
-    [[nodiscard]] T force(int i) const {
-        return observation_ ? observation_->force()[i] : T(0);
-    }
-    dynamics::RotorWrench<T> command_rotors(const PlantModel& nominal, const dynamics::PlantState<T>& seen, T thrust_n,
-                                            T pitch_torque_nm, double tick_s, double rotor_lead, Actuation<T>& given) {
-        if (!aids_.feed_forward) {
-            return wrench_ =
-                       Unaided().command_rotors(nominal, seen, thrust_n, pitch_torque_nm, tick_s, rotor_lead, given);
-        }
-        const ReadRatios<T> ratios = read_ratios(*aids_.feed_forward, nominal, seen, motion_.attitude, map_);
-        T demand_n[max_rotors];
-        allocate_against(nominal, ratios, thrust_n, pitch_torque_nm, demand_n);
-        limit_rotors(nominal, seen, demand_n, given, rotor_lead);
-        T expected_n[max_rotors];
-        for (int i = 0; i < nominal.rotor_count; ++i) {
-            expected_n[i] = expected_thrust(nominal, seen, given.command.thrust_n, tick_s, i);
-        }
-        return wrench_ = wrench_against(nominal, ratios, expected_n);
-    }
-
-    /// What the observer, if there is one, has to remember once the commands are given.
-    void keep(const Actuation<T>& given, T observed[4]) const {
-        for (int i = 0; i < 4; ++i) {
-            observed[i] = T(0);
-        }
-        if (observation_) {
-            observation_->keep(wrench_, given.command.joint_torque_nm, observed);
-        }
-    }
-
- private:
-    const Aids& aids_;
-    const dynamics::Motion<T>& motion_;
-    Map& map_;
-    std::optional<Observation<T>> observation_;
-    dynamics::Motion<T> explained_;
-    dynamics::RotorWrench<T> wrench_{T(0), T(0)};  ///< that the law believes to act in mid-tick
+/// A law that can have aids.
+template <class Law>
+concept CanBeAided = requires(const Law& law) {
+    { law.aids } -> std::convertible_to<const Aids&>;
 };
 
 /// A law that has `aids`, flown with them.
-template <class Law>
+template <CanBeAided Law>
 struct Aided {
     const Law& law;
 
@@ -86,13 +34,7 @@ struct Aided {
     /// The memory with which a flight starts in a state of the nominal plant.
     template <class T>
     [[nodiscard]] Memory<T> rested(const PlantModel& nominal, const dynamics::PlantState<T>& state,
-                                   double tick_s) const {
-        Memory<T> memory{law.rested(nominal, state), {T(0), T(0), T(0), T(0)}};
-        if (law.aids.observer) {
-            start_observing(*law.aids.observer, tick_s, nominal, state, memory.observed);
-        }
-        return memory;
-    }
+                                   double tick_s) const;
 
     /// A memory whose integrals stand still. The observer goes on: see hold_estimate().
     template <class T>
@@ -104,55 +46,18 @@ struct Aided {
     /// Lets the observer estimate at the next tick what it estimated at this one, whatever pushes in between.
     /// @param before memory of this tick   @param change of the nominal momentum over the tick
     template <class T>
-    void hold_estimate(const Memory<T>& before, const T change[4], double tick_s, Memory<T>& now) const {
-        if (law.aids.observer) {
-            controllers::hold_estimate(*law.aids.observer, tick_s, change, before.observed, now.observed);
-        }
-    }
+    void hold_estimate(const Memory<T>& before, const T change[4], double tick_s, Memory<T>& now) const;
 
-    /// One control step: that of the law. @param map see read_ratios()
+    /// One control step: that of the law. @param map what its feed-forward reads, dynamics::ThrustRatios
     template <class T, class Map>
     Memory<T> control(const PlantModel& nominal, const dynamics::PlantState<T>& seen, const dynamics::Motion<T>& motion,
                       const Memory<T>& memory, const BasicReferencePoint<T>& reference, double tick_s,
-                      Actuation<T>& given, Map& map) const {
-        Aid<T, Map> aid(law.aids, nominal, seen, motion, memory.observed, tick_s, map);
-        Memory<T> next;
-        next.loops = law.control(nominal, seen, motion, memory.loops, reference, tick_s, given, aid);
-        aid.keep(given, next.observed);
-        return next;
-    }
+                      Actuation<T>& given, const Map& map) const;
 
     /// How the law asks for the same commands for ever. An observer settles at what is missing in the balance c = Q +
     /// D.
     [[nodiscard]] Rest<Memory> rest(const PlantModel& nominal, const dynamics::EquationsOfMotion<double>& equations,
-                                    RestingCommand command) const {
-        const double given[4] = {0, command.wrench.thrust_n, command.wrench.pitch_torque_nm, command.joint_torque_nm};
-        Rest<Memory> rest;
-        for (int i = 0; i < 4; ++i) {
-            if (law.aids.observer) {
-                command.known_force[i] = equations.bias[i] - given[i];
-            }
-            rest.memory.observed[i] = command.known_force[i];
-            rest.feeds_back.observed[i] = law.aids.observer.has_value();
-        }
-        const auto loops = law.rest(nominal, equations, command);
-        rest.limit = loops.limit;
-        rest.memory.loops = loops.memory;
-        rest.feeds_back.loops = loops.feeds_back;
-        for (int i = 0; i < 3; ++i) {
-            rest.error[i] = loops.error[i];
-        }
-        rest.pitch_reference_rad = loops.pitch_reference_rad;
-        rest.height_gain_1_s2 = loops.height_gain_1_s2;
-        rest.pitch_gain_1_s2 = loops.pitch_gain_1_s2;
-        return rest;
-    }
-};
-
-/// Whether a law can have aids.
-template <class Law>
-inline constexpr bool can_be_aided = requires(const Law& law) {
-    law.aids;
+                                    RestingCommand command) const;
 };
 
 /// Whether this type is that of a law with its aids.

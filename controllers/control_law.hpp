@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <optional>
 #include <string_view>
 #include <variant>
 
+#include "downwash/base/numbers.hpp"
 #include "downwash/controllers/aided_law.hpp"
 #include "downwash/controllers/cascaded_pid.hpp"
 #include "downwash/controllers/model_inversion.hpp"
@@ -29,11 +29,17 @@ struct Controller {
 
 namespace controllers {
 
+/// A law that is a model inversion in other terms.
+template <class Law>
+concept InvertedLaw = requires(const Law& law) {
+    { law.inverted() } -> std::convertible_to<FlownLaw>;
+};
+
 /// What flies the robot: the law itself, or for one that is another's gains in other terms that other law.
 [[nodiscard]] inline FlownLaw flown_law(const ControlLaw& law) {
     return std::visit(
         []<class Law>(const Law& own) -> FlownLaw {
-            if constexpr (requires { own.inverted(); }) {
+            if constexpr (InvertedLaw<Law>) {
                 return own.inverted();
             } else {
                 return own;
@@ -47,7 +53,7 @@ template <class Fly>
 decltype(auto) visit_flown(const FlownLaw& law, const Fly& fly) {
     return std::visit(
         [&]<class Law>(const Law& own) {
-            if constexpr (can_be_aided<Law>) {
+            if constexpr (CanBeAided<Law>) {
                 if (own.aids.are_any()) {
                     return fly(Aided<Law>{own});
                 }
@@ -63,7 +69,7 @@ template <class Any>
 [[nodiscard]] Aids aids_of(const Any& law) {
     return std::visit(
         []<class Law>(const Law& own) {
-            if constexpr (can_be_aided<Law>) {
+            if constexpr (CanBeAided<Law>) {
                 return own.aids;
             } else {
                 return Aids{};
@@ -75,7 +81,7 @@ template <class Any>
 /// The numbers of the largest memory of a law.
 template <class Law>
 constexpr int max_memory_of() {
-    if constexpr (can_be_aided<Law>) {
+    if constexpr (CanBeAided<Law>) {
         return static_cast<int>(sizeof(typename Aided<Law>::template Memory<double>) / sizeof(double));
     } else {
         return static_cast<int>(sizeof(typename Law::template Memory<double>) / sizeof(double));

@@ -20,23 +20,25 @@ struct ReadRatios {
 inline constexpr double min_read_ratio = 0.1;
 
 /// K at the rotors of the vehicle that a law sees.
-/// @param map callable (rotor, x_m, z_m, sin_pitch) -> K at a hub in the plane, or the body's for body(); it may know
-/// which rotors share theirs, see dynamics::rotor_with_factor_of()
-template <class T, class Map>
+/// @param map what the law reads
+template <class T, dynamics::ThrustRatios<T> Map>
 ReadRatios<T> read_ratios(const FeedForward& feed_forward, const PlantModel& nominal,
-                          const dynamics::PlantState<T>& seen, const dynamics::Attitude<T>& a, Map& map) {
+                          const dynamics::PlantState<T>& seen, const dynamics::Attitude<T>& a, const Map& map) {
     const T x_m = seen.q[0] - T(feed_forward.offset_x_m);
     const T z_m = seen.q[1] - T(feed_forward.offset_z_m);
-    const auto read = [&](int rotor) {
-        const dynamics::PlanePoint<T> hub = dynamics::rotor_position(nominal, a, x_m, z_m, rotor);
-        return map(rotor, hub.x, hub.z, a.sin_pitch);
-    };
     ReadRatios<T> ratios;
     for (int i = 0; i < nominal.rotor_count; ++i) {
-        const int same = dynamics::rotor_with_factor_of(map, i);
-        ratios.rotor[i] = same != i ? ratios.rotor[same] : lane::max(read(i), T(min_read_ratio));
+        if (const int same = map.same_as(i); same != i) {
+            ratios.rotor[i] = ratios.rotor[same];
+        } else {
+            const dynamics::PlanePoint<T> hub = dynamics::rotor_position(nominal, a, x_m, z_m, i);
+            ratios.rotor[i] = lane::max(map.thrust_ratio(i, hub, a.sin_pitch), T(min_read_ratio));
+        }
     }
-    ratios.body_push = nominal.has_fountain ? read(nominal.body()) - T(1) : T(0);
+    ratios.body_push = T(0);
+    if (nominal.has_fountain) {
+        ratios.body_push = map.body_ratio(dynamics::center_position(nominal, a, x_m, z_m), a.sin_pitch) - T(1);
+    }
     return ratios;
 }
 
@@ -54,7 +56,7 @@ void allocate_against(const PlantModel& nominal, const ReadRatios<T>& ratios, T 
             a = a + T(nominal.force_share[i]) / ratios.rotor[i];
             b = b + T(nominal.torque_share_1_m[i]) / ratios.rotor[i];
         }
-        const T x_m(nominal.rotor_x_m[nominal.body()]);
+        const T x_m(nominal.center_x_m);
         const T push_n =
             ratios.body_push * (a * thrust_n + b * pitch_torque_nm) / (T(1) + ratios.body_push * (a - x_m * b));
         thrust_n = thrust_n - push_n;
@@ -80,7 +82,7 @@ dynamics::RotorWrench<T> wrench_against(const PlantModel& nominal, const ReadRat
     }
     const T push_n = ratios.body_push * sum_n;
     wrench.thrust_n = wrench.thrust_n + push_n;
-    wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(nominal.rotor_x_m[nominal.body()]) * push_n;
+    wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(nominal.center_x_m) * push_n;
     return wrench;
 }
 

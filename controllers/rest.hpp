@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "downwash/dynamics/flight_step.hpp"
+#include "downwash/dynamics/plant_state.hpp"
 
 // A vehicle at rest in closed loop: what its control law has to remember and to be given to hold it there.
 

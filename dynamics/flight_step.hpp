@@ -1,26 +1,12 @@
 #pragma once
 
+#include "downwash/dynamics/integration.hpp"
 #include "downwash/dynamics/rigid_body.hpp"
+#include "downwash/dynamics/rotor_power.hpp"
 
-// The plant over one control tick: rigid bodies, rotors and the surface effect between command and force.
+// The plant over one control tick: rigid bodies, rotors, and what surrounds them between command and force.
 
 namespace downwash::dynamics {
-
-/// The state of the plant.
-template <class T>
-struct PlantState {
-    T q[4];                  ///< x, z [m], pitch, arm [rad]
-    T u[4];                  ///< their time derivatives
-    T thrust_n[max_rotors];  ///< free-air thrust of each rotor; follows the command with the rotors' lag, if any
-    T energy_j;              ///< rotor and arm energy spent so far
-};
-
-/// The commands, constant over one tick.
-template <class T>
-struct PlantCommand {
-    T thrust_n[max_rotors];  ///< free-air thrust of each rotor, within its limits
-    T joint_torque_nm;
-};
 
 /// Shares total thrust F3 [N] and pitch torque T2 [N m] among the rotors: the least-squares commands, not yet clipped.
 template <class T, class P>
@@ -30,94 +16,38 @@ void allocate(const BasicPlantModel<P>& model, T total_thrust_n, T pitch_torque_
     }
 }
 
-/// Total thrust along b3 [N] and pitch torque [N m] of rotors in aerodynamic effect (thesis figure C.3), and the
-/// horizontal force along x [N] by which walls push.
-template <class T>
-struct RotorWrench {
-    T thrust_n;
-    T pitch_torque_nm;
-    T wall_push_n = T(0);
-};
-
-/// The earliest rotor that is known to have the same thrust ratio K as rotor i, perhaps rotor i itself. A factor that
-/// knows says so by `same_as(rotor)`.
-template <class Factor>
-int rotor_with_factor_of(const Factor& factor, int rotor) {
-    if constexpr (requires { factor.same_as(rotor); }) {
-        return factor.same_as(rotor);
-    } else {
-        return rotor;
-    }
-}
-
-/// K of a rotor, or of the body. A factor that knows what tilt does takes the sine of the pitch too.
-template <class T, class Factor>
-T thrust_ratio(Factor& factor, int rotor, const PlanePoint<T>& hub, const Attitude<T>& a) {
-    if constexpr (requires { factor(rotor, hub.x, hub.z, a.sin_pitch); }) {
-        return factor(rotor, hub.x, hub.z, a.sin_pitch);
-    } else {
-        return factor(rotor, hub.x, hub.z);
-    }
-}
-
-/// How near walls are, from -1 (the vehicle touches one behind it) to 1 (ahead).
-template <class T, class P, class Factor>
-T wall_nearness(const BasicPlantModel<P>& model, Factor& factor, const PlanePoint<T>& center) {
-    if constexpr (requires { factor.wall_nearness(model.walls(), center.x, center.z); }) {
-        return factor.wall_nearness(model.walls(), center.x, center.z);
-    } else {
-        return factor(model.walls(), center.x, center.z) - T(1);
-    }
-}
-
-/// The thrust that rotor i really gives in free air for a nominal one. A factor that knows another thrust coefficient
-/// says so by `thrust_scale(rotor)`.
-template <class T, class Factor>
-T free_air_thrust(const Factor& factor, int rotor, T nominal_n) {
-    if constexpr (requires { factor.thrust_scale(rotor); }) {
-        return factor.thrust_scale(rotor) * nominal_n;
-    } else {
-        return nominal_n;
-    }
-}
-
 /// The wrench at a configuration. A fountain adds (K_body - 1) times the rotors' free-air thrust along b3, at the
 /// centre between them (docs/model.md 4.3). Walls add a horizontal force through the centre of mass and a moment
 /// (4.8).
 /// @param thrust_n of every rotor in free air with its nominal thrust coefficient [N]: a measure of its speed
-/// @param factor callable (rotor, x_m, z_m) -> K at the hub of that rotor in the plane, or the body's for body(), or
-/// for walls() one more than how near they are; it may take the sine of the pitch behind the place, and know a wind and
-/// thrust coefficients too
-template <class T, class Factor, class P>
+template <class T, class P, Surroundings<T> Around>
 RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m,
-                            const T thrust_n[max_rotors], Factor&& factor) {
+                            const T thrust_n[max_rotors], const Around& around) {
     RotorWrench<T> wrench{T(0), T(0)};
-    T factors[max_rotors];
+    T ratios[max_rotors];
     for (int i = 0; i < model.rotor_count; ++i) {
-        if (const int same = rotor_with_factor_of(factor, i); same != i) {
-            factors[i] = factors[same];
+        if (const int same = around.same_as(i); same != i) {
+            ratios[i] = ratios[same];
         } else {
-            const PlanePoint<T> hub = rotor_position(model, a, x_m, z_m, i);
-            factors[i] = thrust_ratio(factor, i, hub, a);
+            ratios[i] = around.thrust_ratio(i, rotor_position(model, a, x_m, z_m, i), a.sin_pitch);
         }
-        const T acting_n = factors[i] * free_air_thrust(factor, i, thrust_n[i]);
+        const T acting_n = ratios[i] * (around.thrust_scale(i) * thrust_n[i]);
         wrench.thrust_n = wrench.thrust_n + acting_n;
         wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[i]) * acting_n;
     }
     if (model.has_fountain || model.has_walls) {
-        const int body = model.body();
-        const PlanePoint<T> center = rotor_position(model, a, x_m, z_m, body);
+        const PlanePoint<T> center = center_position(model, a, x_m, z_m);
         T free_air_n(0);
         for (int i = 0; i < model.rotor_count; ++i) {
-            free_air_n = free_air_n + free_air_thrust(factor, i, thrust_n[i]);
+            free_air_n = free_air_n + around.thrust_scale(i) * thrust_n[i];
         }
         if (model.has_fountain) {
-            const T push_n = (thrust_ratio(factor, body, center, a) - T(1)) * free_air_n;
+            const T push_n = (around.body_ratio(center, a.sin_pitch) - T(1)) * free_air_n;
             wrench.thrust_n = wrench.thrust_n + push_n;
-            wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.rotor_x_m[body]) * push_n;
+            wrench.pitch_torque_nm = wrench.pitch_torque_nm - T(model.center_x_m) * push_n;
         }
         if (model.has_walls) {
-            const T acting_n = wall_nearness(model, factor, center) * free_air_n;
+            const T acting_n = around.wall_nearness(center) * free_air_n;
             wrench.wall_push_n = T(-model.wall_force) * acting_n;
             wrench.pitch_torque_nm = wrench.pitch_torque_nm + T(model.wall_moment_m) * acting_n;
         }
@@ -125,50 +55,33 @@ RotorWrench<T> rotor_wrench(const BasicPlantModel<P>& model, const Attitude<T>& 
     return wrench;
 }
 
-/// Rotor power [W] of free-air thrusts: P = K_P sum T_i^1.5 (docs/model.md 3; thesis (4.2)).
-/// @param model of a plant in the plane or in space
-template <class T, class Model>
-T rotor_power(const Model& model, const T thrust_n[max_rotors]) {
-    T sum(0);
-    for (int i = 0; i < model.rotor_count; ++i) {
-        // A lag shorter than the step lets a stage of the integrator undershoot a thrust that vanishes.
-        sum = sum + lane::power_three_halves(lane::max(thrust_n[i], T(0)));
-    }
-    return T(model.power_coefficient_w_n1p5) * sum;
-}
-
 /// du/dt of the plant under the free-air thrusts of its rotors.
 /// @param q,u coordinates [m, m, rad, rad] and their speeds   @param motion at q and u: motion_at(model, q, u)
-/// @param thrust_n of every rotor in free air [N]   @param factor as for rotor_wrench(); there is drag only where it
-/// says how fast the air is, by `wind()` [m/s], and other forces only where it adds them, by `add_load()`
+/// @param thrust_n of every rotor in free air [N]
 /// @param[out] du accelerations [m/s2, m/s2, rad/s2, rad/s2]
-template <class T, class Factor, class P>
+template <class T, class P, Surroundings<T> Around>
 void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], const Motion<T>& motion,
-                   const T thrust_n[max_rotors], T joint_torque_nm, Factor&& factor, T du[4]) {
+                   const T thrust_n[max_rotors], T joint_torque_nm, const Around& around, T du[4]) {
     const Attitude<T>& a = motion.attitude;
-    const RotorWrench<T> wrench = rotor_wrench(model, a, q[0], q[1], thrust_n, factor);
+    const RotorWrench<T> wrench = rotor_wrench(model, a, q[0], q[1], thrust_n, around);
     T force[4] = {wrench.thrust_n * a.sin_pitch, wrench.thrust_n * a.cos_pitch, wrench.pitch_torque_nm,
                   joint_torque_nm};
     if (model.has_walls) {
         force[0] = force[0] + wrench.wall_push_n;
     }
-    if constexpr (requires { factor.wind(); }) {
-        if (model.has_drag) {
-            add_drag(model, a, u, factor.wind(), force);
-        }
+    if (model.has_drag) {
+        add_drag(model, a, u, around.wind(), force);
     }
-    if constexpr (requires { factor.add_load(q, u, a, force); }) {
-        factor.add_load(q, u, a, force);
-    }
+    around.add_load(q, u, a, force);
     forward_dynamics(model, motion.equations, force, du);
 }
 
-/// The state after `dt_s` with the command held: one classical Runge-Kutta step of fourth order. The surface effect
-/// is evaluated at the rotor positions of every stage.
-/// @param motion that of the state   @param dt_s > 0   @param factor as for rotor_wrench()
-template <class T, class Factor, class P>
+/// The state after `dt_s` with the command held: one classical Runge-Kutta step of fourth order. The surroundings are
+/// asked at every stage.
+/// @param motion that of the state   @param dt_s > 0
+template <class T, class P, Surroundings<T> Around>
 PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& state, const Motion<T>& motion,
-                          const PlantCommand<T>& command, T dt_s, Factor&& factor) {
+                          const PlantCommand<T>& command, T dt_s, const Around& around) {
     // A loop over the stages, not four copies of their code: it has to stay in the processor's instruction cache.
     constexpr double share_of_step[] = {0, 0.5, 0.5, 1};
     constexpr double weight[] = {1, 2, 2, 1};
@@ -201,7 +114,7 @@ PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& 
             }
             here = motion_at(model, q, u);
         }
-        accelerations(model, q, u, here, thrust_n, command.joint_torque_nm, factor, du);
+        accelerations(model, q, u, here, thrust_n, command.joint_torque_nm, around, du);
         const T w(weight[stage]);
         for (int i = 0; i < 4; ++i) {
             q_sum[i] = q_sum[i] + w * u[i];
@@ -234,62 +147,60 @@ PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& 
     return next;
 }
 
-/// The same if the motion of the state is not known yet.
-template <class T, class Factor, class P>
+/// One step if the motion of the state is not known yet.
+template <class T, class P, Surroundings<T> Around>
 PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& state, const PlantCommand<T>& command,
-                          T dt_s, Factor&& factor) {
-    return flight_step(model, state, motion_at(model, state.q, state.u), command, dt_s, factor);
+                          T dt_s, const Around& around) {
+    return flight_step(model, state, motion_at(model, state.q, state.u), command, dt_s, around);
 }
 
-/// The tick as one Runge-Kutta step; for planning.
-struct OneStep {
-    /// The state after `dt_s`; see flight_step().
-    template <class T, class P, class Factor>
-    PlantState<T> operator()(const BasicPlantModel<P>& model, const PlantState<T>& state, const Motion<T>& motion,
-                             const PlantCommand<T>& command, T dt_s, Factor&& factor) const {
-        return flight_step(model, state, motion, command, dt_s, factor);
-    }
-};
+template <class T, class P, Surroundings<T> Around>
+PlantState<T> OneStep::operator()(const BasicPlantModel<P>& model, const PlantState<T>& state, const Motion<T>& motion,
+                                  const PlantCommand<T>& command, T dt_s, const Around& around) const {
+    return flight_step(model, state, motion, command, dt_s, around);
+}
 
-/// The tick in as many steps as it needs; for flights that are reported. Where a rotor disc passes the edge of an
-/// obstacle K is not smooth, and one step of 10 ms can be wrong by 2e-5 in a rate. A step is halved until both halves
-/// agree with the whole.
-struct RefinedStep {
-    double tolerance = 1e-7;  ///< of every coordinate and rate, SI units
-    int max_halvings = 8;
-
-    /// The state after `dt_s`; see flight_step().
-    template <class Factor>
-    PlantState<double> operator()(const PlantModel& model, const PlantState<double>& state,
-                                  const Motion<double>& motion, const PlantCommand<double>& command, double dt_s,
-                                  Factor&& factor) const {
-        return refined(model, state, command, dt_s, factor, flight_step(model, state, motion, command, dt_s, factor),
-                       max_halvings);
+template <Surroundings<double> Around>
+PlantState<double> DisturbedStep::operator()(const PlantModel& model, const PlantState<double>& state,
+                                             const Motion<double>& motion, const PlantCommand<double>& command,
+                                             double dt_s, const Around& around) const {
+    PlantCommand<double> acting = command;
+    acting.joint_torque_nm += added.joint_torque_nm;
+    for (int i = 0; i < model.rotor_count; ++i) {
+        acting.thrust_n[i] += added.thrust_n[i];
     }
+    return flight_step(model, state, motion, acting, dt_s, around);
+}
 
- private:
-    template <class Factor>
-    PlantState<double> refined(const PlantModel& model, const PlantState<double>& state,
-                               const PlantCommand<double>& command, double dt_s, Factor&& factor,
-                               const PlantState<double>& whole, int halvings) const {
-        const double half_s = 0.5 * dt_s;
-        const PlantState<double> middle = flight_step(model, state, command, half_s, factor);
-        const PlantState<double> end = flight_step(model, middle, command, half_s, factor);
-        if (halvings == 0 || agree(whole, end)) {
-            return end;
-        }
-        const PlantState<double> reached = refined(model, state, command, half_s, factor, middle, halvings - 1);
-        return refined(model, reached, command, half_s, factor, flight_step(model, reached, command, half_s, factor),
-                       halvings - 1);
-    }
+template <Surroundings<double> Around>
+PlantState<double> RefinedStep::operator()(const PlantModel& model, const PlantState<double>& state,
+                                           const Motion<double>& motion, const PlantCommand<double>& command,
+                                           double dt_s, const Around& around) const {
+    return refined(model, state, command, dt_s, around, flight_step(model, state, motion, command, dt_s, around),
+                   max_halvings);
+}
 
-    [[nodiscard]] bool agree(const PlantState<double>& a, const PlantState<double>& b) const {
-        double worst = 0;
-        for (int i = 0; i < 4; ++i) {
-            worst = lane::max(worst, lane::max(lane::abs(a.q[i] - b.q[i]), lane::abs(a.u[i] - b.u[i])));
-        }
-        return worst <= tolerance;
+template <Surroundings<double> Around>
+PlantState<double> RefinedStep::refined(const PlantModel& model, const PlantState<double>& state,
+                                        const PlantCommand<double>& command, double dt_s, const Around& around,
+                                        const PlantState<double>& whole, int halvings) const {
+    const double half_s = 0.5 * dt_s;
+    const PlantState<double> middle = flight_step(model, state, command, half_s, around);
+    const PlantState<double> end = flight_step(model, middle, command, half_s, around);
+    if (halvings == 0 || agree(whole, end)) {
+        return end;
     }
-};
+    const PlantState<double> reached = refined(model, state, command, half_s, around, middle, halvings - 1);
+    return refined(model, reached, command, half_s, around, flight_step(model, reached, command, half_s, around),
+                   halvings - 1);
+}
+
+inline bool RefinedStep::agree(const PlantState<double>& a, const PlantState<double>& b) const {
+    double worst = 0;
+    for (int i = 0; i < 4; ++i) {
+        worst = lane::max(worst, lane::max(lane::abs(a.q[i] - b.q[i]), lane::abs(a.u[i] - b.u[i])));
+    }
+    return worst <= tolerance;
+}
 
 }  // namespace downwash::dynamics

@@ -22,15 +22,14 @@ struct PitchBenchState {
 };
 
 /// Angular acceleration [rad/s2] on the bench under the free-air thrusts of the rotors.
-/// @param factor as for rotor_wrench() in space
-template <class T, class P, class Factor>
+template <class T, class P, SpaceSurroundings<T> Around>
 T pitch_acceleration(const BasicSpaceModel<P, 0>& model, const PitchBench& bench, T pitch_rad, T pitch_rate_rad_s,
-                     const T thrust_n[max_rotors], Factor&& factor) {
+                     const T thrust_n[max_rotors], const Around& around) {
     const T zero(0);
     const LaneRotation<T> attitude = rotation_about(LaneVector<T>{zero, T(1), zero}, pitch_rad);
     const LaneVector<T> from_axle = T(-1) * spread<T>(bench.axle_m);  // to the centre of mass, body axes
     const LaneVector<T> hanging = attitude * from_axle;
-    const SpaceWrench<T> wrench = rotor_wrench(model, attitude, spread<T>(bench.place_m) + hanging, thrust_n, factor);
+    const SpaceWrench<T> wrench = rotor_wrench(model, attitude, spread<T>(bench.place_m) + hanging, thrust_n, around);
     const T mass(model.multirotor_mass_kg);
     const T inertia = T(model.inertia_kg_m2.yy) + mass * (from_axle.x * from_axle.x + from_axle.z * from_axle.z);
     const T torque = wrench.torque_nm.y + (from_axle.z * wrench.force_n.x - from_axle.x * wrench.force_n.z) +
@@ -40,10 +39,10 @@ T pitch_acceleration(const BasicSpaceModel<P, 0>& model, const PitchBench& bench
 
 /// The state after `dt_s` with the command held: one classical Runge-Kutta step, as space_step().
 /// @param thrust_command_n free-air thrust of each rotor   @param dt_s > 0
-template <class T, class P, class Factor>
+template <class T, class P, SpaceSurroundings<T> Around>
 PitchBenchState<T> pitch_bench_step(const BasicSpaceModel<P, 0>& model, const PitchBench& bench,
                                     const PitchBenchState<T>& state, const T thrust_command_n[max_rotors], T dt_s,
-                                    Factor&& factor) {
+                                    const Around& around) {
     constexpr double share_of_step[] = {0, 0.5, 0.5, 1};
     constexpr double weight[] = {1, 2, 2, 1};
     const bool has_lag = model.has_rotor_lag;
@@ -66,7 +65,7 @@ PitchBenchState<T> pitch_bench_step(const BasicSpaceModel<P, 0>& model, const Pi
                 }
             }
         }
-        acceleration = pitch_acceleration(model, bench, at.pitch_rad, at.pitch_rate_rad_s, at.thrust_n, factor);
+        acceleration = pitch_acceleration(model, bench, at.pitch_rad, at.pitch_rate_rad_s, at.thrust_n, around);
         const T w(weight[stage]);
         pitch_sum = pitch_sum + w * at.pitch_rate_rad_s;
         rate_sum = rate_sum + w * acceleration;

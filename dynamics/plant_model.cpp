@@ -60,8 +60,8 @@ PlantModel make_plant_model(const MultirotorParameters& multirotor, const ArmPar
     }
     model.has_fountain = has_fountain;
     for (const Vector3& position_m : rotors.positions_m) {
-        model.rotor_x_m[model.body()] += position_m[0] / s.count;
-        model.rotor_z_m[model.body()] += position_m[2] / s.count;
+        model.center_x_m += position_m[0] / s.count;
+        model.center_z_m += position_m[2] / s.count;
     }
     model.min_thrust_n = rotors.min_thrust_n;
     model.max_thrust_n = rotors.max_thrust_n;

@@ -19,10 +19,6 @@ struct PlantStructure {
     /// What a wall does that a rotor touches, over the free-air thrust: a force away from it, and a moment [m] by which
     /// the side towards it sinks.
     double wall_force, wall_moment_m;
-    /// The number of the body, behind those of the rotors: its hub is the centre between all of theirs.
-    [[nodiscard, gnu::always_inline]] constexpr int body() const noexcept { return rotor_count; }
-    /// The number under which a factor says how near walls are, behind that of the body and at the same place.
-    [[nodiscard, gnu::always_inline]] constexpr int walls() const noexcept { return rotor_count + 1; }
 };
 
 /// What may differ from lane to lane. Nothing but T: see base/numbers.hpp.
@@ -39,9 +35,10 @@ struct PlantNumbers {
     T arm_center_of_mass_m;  ///< lB
     T arm_length_m;          ///< L
     T max_joint_torque_nm;
-    T rotor_x_m[max_rotors + 1], rotor_z_m[max_rotors + 1];  ///< hubs in the body frame, then that of the body
-    T force_share[max_rotors];                               ///< thrust of rotor i per newton of F3
-    T torque_share_1_m[max_rotors];                          ///< thrust of rotor i per newton metre of T2
+    T rotor_x_m[max_rotors], rotor_z_m[max_rotors];  ///< hubs in the body frame
+    T center_x_m, center_z_m;                        ///< the centre between all hubs, where air pushes the body
+    T force_share[max_rotors];                       ///< thrust of rotor i per newton of F3
+    T torque_share_1_m[max_rotors];                  ///< thrust of rotor i per newton metre of T2
     T min_thrust_n, max_thrust_n;
     T rotor_time_constant_s;  ///< > 0 in every lane where the plant has a lag
     T power_coefficient_w_n1p5;

@@ -2,6 +2,7 @@
 
 #include "downwash/base/lane_math.hpp"
 #include "downwash/dynamics/plant_model.hpp"
+#include "downwash/dynamics/plant_state.hpp"
 
 // The two rigid bodies of the manipulator in closed form (docs/model.md 2; thesis C.1, A.6), one template over the lane
 // type. Coordinates q = (x, z, pitch, arm) [m, m, rad, rad], speeds u = dq/dt; M du/dt + c = Q.
@@ -166,12 +167,6 @@ T potential_energy(const BasicPlantModel<P>& model, const Attitude<T>& a, T z_m)
     return T(standard_gravity_m_s2) * (T(model.multirotor_mass_kg) * z_m + T(model.arm_mass_kg) * arm_height);
 }
 
-/// A point of the plane [m], or another vector in it.
-template <class T>
-struct PlanePoint {
-    T x, z;
-};
-
 /// Adds the drag of both bodies in moving air to generalised forces Q [N, N, N m, N m] (docs/model.md 2.1). Along the
 /// arm the force is integrated with the two-point Gauss rule: exact where the stream crosses all of it from one side.
 /// @param u speeds [m/s, m/s, rad/s, rad/s]   @param wind velocity of the air [m/s]
@@ -208,12 +203,23 @@ PlanePoint<T> end_effector_position(const BasicPlantModel<P>& model, const Attit
     return {x_m + a.joint_x + length * a.arm_x, z_m + a.joint_z + length * a.arm_z};
 }
 
+/// A point of the multirotor, given in its body frame, in the plane [m].
+template <class T>
+PlanePoint<T> body_point(const Attitude<T>& a, T x_m, T z_m, T body_x_m, T body_z_m) {
+    return {x_m + a.cos_pitch * body_x_m + a.sin_pitch * body_z_m,
+            z_m - a.sin_pitch * body_x_m + a.cos_pitch * body_z_m};
+}
+
 /// The hub of rotor i in the plane [m]; its lateral offset does not change.
 template <class T, class P>
 PlanePoint<T> rotor_position(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m, int rotor) {
-    const T bx(model.rotor_x_m[rotor]);
-    const T bz(model.rotor_z_m[rotor]);
-    return {x_m + a.cos_pitch * bx + a.sin_pitch * bz, z_m - a.sin_pitch * bx + a.cos_pitch * bz};
+    return body_point(a, x_m, z_m, T(model.rotor_x_m[rotor]), T(model.rotor_z_m[rotor]));
+}
+
+/// The centre between all hubs in the plane [m].
+template <class T, class P>
+PlanePoint<T> center_position(const BasicPlantModel<P>& model, const Attitude<T>& a, T x_m, T z_m) {
+    return body_point(a, x_m, z_m, T(model.center_x_m), T(model.center_z_m));
 }
 
 }  // namespace downwash::dynamics

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "downwash/dynamics/flight_step.hpp"
-#include "downwash/dynamics/space_body.hpp"
+#include "downwash/dynamics/rotor_power.hpp"
+#include "downwash/dynamics/space_surroundings.hpp"
 
-// The plant in space over one control tick: bodies, rotors anywhere and tilted, the surface effect as a function.
+// The plant in space over one control tick: bodies, rotors anywhere and tilted, and what surrounds them.
 
 namespace downwash::dynamics {
 
@@ -43,49 +43,36 @@ LaneVector<T> rotor_spin_of(const BasicSpaceModel<P, n>& model, const T thrust_n
 /// A function of its own always: where a look-up in a map waits for the place of a hub, it is fastest so (measured: a
 /// tick with a map by a half).
 /// @param position_m of the multirotor's centre of mass, world   @param thrust_n of every rotor in free air [N]
-/// @param factor callable (rotor, x_m, y_m, z_m) -> K at the hub of that rotor in the world; it may know
-/// `same_as(rotor)` and `thrust_scale(rotor)`, see flight_step.hpp
-template <class T, int n, class P, class Factor>
+template <class T, int n, class P, SpaceSurroundings<T> Around>
 [[gnu::noinline]] SpaceWrench<T> rotor_wrench(const BasicSpaceModel<P, n>& model, const LaneRotation<T>& attitude,
                                               const LaneVector<T>& position_m, const T thrust_n[max_rotors],
-                                              Factor&& factor) {
+                                              const Around& around) {
     SpaceWrench<T> wrench{{T(0), T(0), T(0)}, {T(0), T(0), T(0)}};
-    T factors[max_rotors];
     for (int i = 0; i < model.rotor_count; ++i) {
         const LaneVector<T> place = spread<T>(model.rotor[i].position_m);
         const LaneVector<T> axis = spread<T>(model.rotor[i].axis);
-        if (const int same = rotor_with_factor_of(factor, i); same != i) {
-            factors[i] = factors[same];
-        } else {
-            const LaneVector<T> hub = position_m + attitude * place;
-            factors[i] = factor(i, hub.x, hub.y, hub.z);
-        }
-        const T free_air_n = free_air_thrust(factor, i, thrust_n[i]);
-        const LaneVector<T> push = (factors[i] * free_air_n) * axis;
+        const T ratio = around.thrust_ratio(i, position_m + attitude * place);
+        const LaneVector<T> push = (ratio * thrust_n[i]) * axis;
         wrench.force_n = wrench.force_n + push;
-        wrench.torque_nm = wrench.torque_nm + (cross(place, push) + (T(model.rotor[i].reaction_m) * free_air_n) * axis);
+        wrench.torque_nm =
+            wrench.torque_nm + (cross(place, push) + (T(model.rotor[i].reaction_m) * thrust_n[i]) * axis);
     }
     return wrench;
 }
 
 /// du/dt under the free-air thrusts of the rotors and joint torques.
-/// @param rotor_spin rotor_spin_of() the thrusts   @param surroundings as `factor` of rotor_wrench(); what touches the
-/// multirotor adds `load(q, u, attitude)`, a SpaceWrench
-template <class T, int n, class P, class Surroundings>
+/// @param rotor_spin rotor_spin_of() the thrusts
+template <class T, int n, class P, SpaceSurroundings<T> Around>
 void accelerations(const BasicSpaceModel<P, n>& model, const T q[space_coordinates<n>], const T u[space_speeds<n>],
                    const T thrust_n[max_rotors], const LaneVector<T>& rotor_spin, const T joint_torque_nm[room_for<n>],
-                   Surroundings&& surroundings, T du[space_speeds<n>]) {
+                   const Around& around, T du[space_speeds<n>]) {
     // Surroundings first: a call out of here would send everything known by then to memory.
     const LaneRotation<T> attitude = rotation_of(q + 3);
-    SpaceWrench<T> wrench = rotor_wrench(model, attitude, LaneVector<T>{q[0], q[1], q[2]}, thrust_n, surroundings);
+    SpaceWrench<T> wrench = rotor_wrench(model, attitude, LaneVector<T>{q[0], q[1], q[2]}, thrust_n, around);
     if (model.has_gyroscopic_term) {
         wrench.torque_nm = wrench.torque_nm - cross(LaneVector<T>{u[3], u[4], u[5]}, rotor_spin);
     }
-    if constexpr (requires { surroundings.load(q, u, attitude); }) {
-        const SpaceWrench<T> load = surroundings.load(q, u, attitude);
-        wrench.force_n = wrench.force_n + load.force_n;
-        wrench.torque_nm = wrench.torque_nm + load.torque_nm;
-    }
+    around.add_load(q, u, attitude, wrench);
     const SpacePlaces<T, n> p = places_at(model, q, attitude);
     forward_dynamics(model, p, equations_of_motion(model, p, u), wrench, joint_torque_nm, du);
 }
@@ -103,10 +90,10 @@ void normalise_attitude(T q[7]) {
 /// The state after `dt_s` with the command held: one classical Runge-Kutta step of fourth order, in which the four
 /// numbers of the quaternion are numbers like others; it is brought back to length 1 at the end. The surroundings are
 /// asked at every stage.
-/// @param dt_s > 0   @param surroundings as for accelerations()
-template <class T, int n, class P, class Surroundings>
+/// @param dt_s > 0
+template <class T, int n, class P, SpaceSurroundings<T> Around>
 SpaceState<T, n> space_step(const BasicSpaceModel<P, n>& model, const SpaceState<T, n>& state,
-                            const SpaceCommand<T, n>& command, T dt_s, Surroundings&& surroundings) {
+                            const SpaceCommand<T, n>& command, T dt_s, const Around& around) {
     constexpr double share_of_step[] = {0, 0.5, 0.5, 1};
     constexpr double weight[] = {1, 2, 2, 1};
     constexpr int coordinates = space_coordinates<n>;
@@ -146,7 +133,7 @@ SpaceState<T, n> space_step(const BasicSpaceModel<P, n>& model, const SpaceState
             }
         }
         coordinate_rates<T, n>(q, u, dq);
-        accelerations(model, q, u, thrust_n, rotor_spin, command.joint_torque_nm, surroundings, du);
+        accelerations(model, q, u, thrust_n, rotor_spin, command.joint_torque_nm, around, du);
         const T w(weight[stage]);
         for (int i = 0; i < coordinates; ++i) {
             q_sum[i] = q_sum[i] + w * dq[i];

@@ -24,6 +24,9 @@ struct TiltLoss {
     friend bool operator==(const TiltLoss&, const TiltLoss&) = default;
 };
 
+/// A rotor that counts as level whatever its tilt.
+inline constexpr TiltLoss no_tilt_loss{};
+
 /// Fitted to static measurements over ground at tilts up to 30 degrees (docs/aeromap.md). There are none under a
 /// ceiling.
 inline constexpr double default_ground_tilt_loss = 0.37;

@@ -314,7 +314,7 @@ ControlLaw::Read ControlLaw::read(const Motion& seen, const Surroundings& nomina
             read.ratio[k] = std::max(nominal.thrust_ratio(i, hub, seen.pitch_rad), 0.1);
         }
         const Planar center = from + from_body(nominal_vehicle_.hub_center_m, seen.pitch_rad);
-        read.fountain = nominal.fountain(nominal_vehicle_.rotor_count, center, seen.pitch_rad);
+        read.fountain = nominal.fountain(center, seen.pitch_rad);
     }
     return read;
 }

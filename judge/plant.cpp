@@ -55,9 +55,8 @@ Acceleration Plant::acceleration(const Motion& motion, const std::array<double, 
         push(lever, surroundings_.thrust_ratio(i, motion.position_m + lever, motion.pitch_rad) * thrust);
     }
     const Planar center = from_body(vehicle_.hub_center_m, motion.pitch_rad);
-    push(center,
-         surroundings_.fountain(vehicle_.rotor_count, motion.position_m + center, motion.pitch_rad) * free_air_n);
-    const auto wall = surroundings_.walls(vehicle_.rotor_count + 1, motion.position_m + center, free_air_n);
+    push(center, surroundings_.fountain(motion.position_m + center, motion.pitch_rad) * free_air_n);
+    const auto wall = surroundings_.walls(motion.position_m + center, free_air_n);
     loads.body_force_n = loads.body_force_n + Planar{wall.force_x_n, 0};
     loads.body_moment_nm += wall.moment_nm;
     add_drag(vehicle_, motion, wind_m_s, loads);

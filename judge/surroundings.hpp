@@ -39,13 +39,13 @@ class Surroundings {
     }
 
     /// K_body - 1 at the centre between the rotors: a push from the ground. 0 without a fountain.
-    /// @param body its number, behind those of the rotors
-    [[nodiscard]] double fountain(int body, Planar center_m, double pitch_rad) const {
+    [[nodiscard]] double fountain(Planar center_m, double pitch_rad) const {
         if (effects_ == nullptr || !effects_->has_fountain) {
             return 0;
         }
         const Planar seen = center_m - Planar{world_.scene_x_m, world_.scene_z_m};
-        const double push = effects_->all->direct_factor(body, seen.x, seen.z) - 1;
+        const FlightModel& all = *effects_->all;
+        const double push = all.factor_in_layer(all.body_layer(), seen.x, seen.z).all - 1;
         return (1 + world_.ground_scale) * faded(push, effects_->ground_tilt_loss, pitch_rad);
     }
 
@@ -53,14 +53,14 @@ class Surroundings {
     struct WallLoad {
         double force_x_n = 0, moment_nm = 0;
     };
-    /// @param layer its number, behind that of the body   @param center_m between the rotors   @param thrust_n of all
-    /// rotors in free air
-    [[nodiscard]] WallLoad walls(int layer, Planar center_m, double thrust_n) const {
+    /// @param center_m between the rotors   @param thrust_n of all rotors in free air
+    [[nodiscard]] WallLoad walls(Planar center_m, double thrust_n) const {
         if (effects_ == nullptr || (effects_->wall_force == 0 && effects_->wall_moment_m == 0)) {
             return {};
         }
         const Planar seen = center_m - Planar{world_.scene_x_m, world_.scene_z_m};
-        const double ahead = effects_->all->direct_factor(layer, seen.x, seen.z) - 1;
+        const FlightModel& all = *effects_->all;
+        const double ahead = all.factor_in_layer(all.wall_layer(), seen.x, seen.z).all - 1;
         return {-ahead * effects_->wall_force * thrust_n, ahead * effects_->wall_moment_m * thrust_n};
     }
 

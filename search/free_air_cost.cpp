@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "downwash/simulation/flight_loop.hpp"
+#include "downwash/dynamics/flight_step.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -69,7 +69,7 @@ double FreeAirCost::of_hold(const Configuration& at, double hold_s) const {
 }
 
 double FreeAirCost::clearance_density(const Configuration& at) const {
-    return simulation::clearance_density(model_.collisions().clearance_m(level_at(at)));
+    return downwash::clearance_density(model_.collisions().clearance_m(level_at(at)));
 }
 
 double FreeAirCost::mean_clearance_density(const Configuration& from, const Configuration& to) const {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "downwash/simulation/flight.hpp"
+#include "downwash/simulation/flight_rules.hpp"
 
 namespace downwash::simulation {
 namespace {

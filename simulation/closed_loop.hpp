@@ -1,56 +1,28 @@
 #pragma once
 
 #include <type_traits>
-#include <variant>
 
-#include "downwash/controllers/control_law.hpp"
+#include "downwash/controllers/control.hpp"
 #include "downwash/dynamics/flight_step.hpp"
-#include "downwash/effects/sided_factor.hpp"
-#include "downwash/simulation/read_effect.hpp"
-#include "downwash/simulation/world_numbers.hpp"
+#include "downwash/simulation/surroundings.hpp"
+#include "downwash/simulation/tick_model.hpp"
+#include "downwash/simulation/vehicle_state.hpp"
+#include "downwash/simulation/world_tick.hpp"
 
 // One tick of the closed loop: the one definition that planning, execution, studies and benchmarks share.
 
 namespace downwash::simulation {
 
-/// Everything about the vehicle that does not change in flight.
-struct TickModel {
-    PlantModel plant;  ///< what the controller knows, and what flies unless somebody says otherwise
-    FlownLaw law;
-    double tick_s;  ///< control period, 1 / rate_hz
-    TiltLoss tilt_loss = {};
-};
-
-/// What the plain tick changes: bodies, rotor lag, energy, and every integrator. Nothing but T: see base/numbers.hpp.
-template <class T>
-struct VehicleState {
-    dynamics::PlantState<T> plant;
-    controllers::LawMemory<T> memory;
-};
-
-/// Everything about the vehicle that changes in flight, with what its world remembers. Nothing but T.
-template <class T>
-struct State : VehicleState<T> {
-    WorldMemory<T> world;  ///< the plain tick leaves it as it is
-};
-
-// With the narrow registers of every processor a tick with all that it calls in one place takes a sixth less; kernels
-// of wide ones flatten their whole loop instead. What sanitizers add would keep the compiler busy for minutes.
-#if defined(__AVX2__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define DOWNWASH_IN_ONE_PIECE
-#else
-#define DOWNWASH_IN_ONE_PIECE [[gnu::flatten]]
-#endif
-
 /// The controller's part of a tick. @param seen what it sees   @param[out] next what the law remembers
-template <class T, class Law, class Effect>
+template <class T, class Law, EffectField<T> Field>
 [[gnu::always_inline]] inline void control(const TickModel& model, const Law& law, const dynamics::PlantState<T>& seen,
                                            const dynamics::Motion<T>& motion, const controllers::LawMemory<T>& memory,
-                                           const BasicReferencePoint<T>& reference, Effect& effect,
+                                           const BasicReferencePoint<T>& reference, Field& field,
                                            controllers::Actuation<T>& given, controllers::LawMemory<T>& next) {
     const auto own = controllers::recalled<Law>(memory);
     if constexpr (controllers::is_aided<Law>) {
-        const ReadEffect<T, Effect> map(effect, model.tilt_loss);
+        auto& read = field.as_read();
+        const NominalSurroundings<T, std::remove_reference_t<decltype(read)>> map(read, model.tilt_loss);
         controllers::remember(law.control(model.plant, seen, motion, own, reference, model.tick_s, given, map), next);
     } else {
         controllers::remember(law.control(model.plant, seen, motion, own, reference, model.tick_s, given), next);
@@ -59,39 +31,29 @@ template <class T, class Law, class Effect>
 
 /// One control tick, a pure function: the controller reads the state, its commands are held while the plant moves.
 /// @param law that of the model, as what flies: what runs tick by tick calls controllers::visit_flown() once
-/// @param motion that of the state
-/// @param factor callable (rotor, x_m, z_m) -> thrust ratio K at a rotor hub in the plane. That of a tilted rotor is
-/// less if the factor tells the sides apart (see WorldSurroundings); otherwise it is taken as it is
-/// @param[out] given what the controller commanded
-/// @param integrate callable (plant, state, motion, command, dt, factor) -> state: dynamics::OneStep or
-/// dynamics::RefinedStep
-template <class T, class Law, class Factor, class Integrate = dynamics::OneStep>
-DOWNWASH_IN_ONE_PIECE VehicleState<T> tick(const TickModel& model, const Law& law, const VehicleState<T>& state,
-                                           const dynamics::Motion<T>& motion, const BasicReferencePoint<T>& reference,
-                                           Factor&& factor, controllers::Actuation<T>& given,
-                                           const Integrate& integrate = {}) {
+/// @param motion that of the state   @param[out] given what the controller commanded
+/// @param integrate how the plant moves: see dynamics/integration.hpp
+template <class T, class Law, EffectField<T> Field, class Integrate = dynamics::OneStep>
+VehicleState<T> tick(const TickModel& model, const Law& law, const VehicleState<T>& state,
+                     const dynamics::Motion<T>& motion, const BasicReferencePoint<T>& reference, Field& field,
+                     controllers::Actuation<T>& given, const Integrate& integrate = {}) {
     VehicleState<T> next;
-    control(model, law, state.plant, motion, state.memory, reference, factor, given, next.memory);
-    if constexpr (requires { factor.sided(0, state.plant.q[0], state.plant.q[1]); }) {
-        const TiltedEffect<T, std::remove_reference_t<Factor>> effect(factor, model.tilt_loss);
-        next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), effect);
-    } else {
-        next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), factor);
-    }
+    control(model, law, state.plant, motion, state.memory, reference, field, given, next.memory);
+    const NominalSurroundings<T, Field> around(field, model.tilt_loss);
+    next.plant = integrate(model.plant, state.plant, motion, given.command, T(model.tick_s), around);
     return next;
 }
 
-/// The same in a world that is not what the controller takes it for, perhaps a different one in every lane. In the
-/// world without any difference it is the same to the last bit.
-/// @param noise standard normal numbers of this tick   @param effect see WorldSurroundings
-template <class T, class Law, class Effect, class Integrate = dynamics::OneStep>
-DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumbers<T>& world,
-                                             const T noise[noise_count], const State<T>& state,
-                                             const BasicReferencePoint<T>& reference, Effect&& effect,
-                                             controllers::Actuation<T>& given, const Integrate& integrate = {}) {
+/// One control tick in a world that is not what the controller takes it for, perhaps a different one in every lane. In
+/// the world without any difference it is tick() to the last bit.
+/// @param noise standard normal numbers of this tick   @param integrate see tick()
+template <class T, class Law, EffectField<T> Field, class Integrate = dynamics::OneStep>
+State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumbers<T>& world, const T noise[noise_count],
+                       const State<T>& state, const BasicReferencePoint<T>& reference, Field& field,
+                       controllers::Actuation<T>& given, const Integrate& integrate = {}) {
     const dynamics::PlantState<T> seen = seen_state(world, state.plant, state.world, noise);
     State<T> next;
-    control(model, law, seen, dynamics::motion_at(model.plant, seen.q, seen.u), state.memory, reference, effect, given,
+    control(model, law, seen, dynamics::motion_at(model.plant, seen.q, seen.u), state.memory, reference, field, given,
             next.memory);
     BasicPlantModel<T> plant;
     static_cast<PlantStructure&>(plant) = model.plant;
@@ -108,24 +70,11 @@ DOWNWASH_IN_ONE_PIECE State<T> tick_in_world(const TickModel& model, const Law& 
         by.u[1] = by.u[1] - sign * (by.u[2] * x);
     };
     shift(moving, motion.attitude, T(1));
-    const WorldSurroundings surroundings(world, wind_in(world, state.world), effect, model.tilt_loss);
-    next.plant = integrate(plant, moving, motion, given.command, T(model.tick_s), surroundings);
+    const WorldSurroundings<T, Field> around(world, wind_in(world, state.world), field, model.tilt_loss);
+    next.plant = integrate(plant, moving, motion, given.command, T(model.tick_s), around);
     shift(next.plant, dynamics::attitude(plant, next.plant.q[2], next.plant.q[3]), T(-1));
     next.world = later(world, state.plant, state.world, noise);
     return next;
-}
-
-#undef DOWNWASH_IN_ONE_PIECE
-
-/// A single tick, where neither the law's type nor the motion of the state is at hand.
-template <class Factor, class Integrate = dynamics::OneStep>
-State<double> tick(const TickModel& model, const State<double>& state, const ReferencePoint& reference, Factor&& factor,
-                   controllers::Actuation<double>& given, const Integrate& integrate = {}) {
-    const auto motion = dynamics::motion_at(model.plant, state.plant.q, state.plant.u);
-    return controllers::visit_flown(model.law, [&](const auto& law) {
-        const VehicleState<double>& vehicle = state;
-        return State<double>{tick(model, law, vehicle, motion, reference, factor, given, integrate), state.world};
-    });
 }
 
 }  // namespace downwash::simulation

@@ -4,13 +4,17 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "downwash/base/numbers.hpp"
+#include "downwash/dynamics/flight_step.hpp"
 #include "downwash/simulation/between_ticks.hpp"
+#include "downwash/simulation/direct_field.hpp"
 #include "downwash/simulation/flight_loop.hpp"
-#include "downwash/simulation/flight_rules.hpp"
+#include "downwash/simulation/rule_checks.hpp"
+#include "downwash/simulation/surroundings.hpp"
 #include "downwash/simulation/touch_flight.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
@@ -26,15 +30,14 @@ constexpr std::string_view outcome_names[] = {"ok",          "collision",  "unst
                                               "goal_missed", "over_budget"};
 
 /// Writes the log of one flight while it is flown.
-template <class Factor>
 class Recorder {
  public:
-    /// @param world nullptr: the plain tick   @param factor see WorldSurroundings
-    Recorder(const FlightModel& model, const FlownWorld* world, Factor& factor, Execution& execution)
+    /// @param world nullptr: the plain tick
+    Recorder(const FlightModel& model, const FlownWorld* world, simulation::FlightEffect& effect, Execution& execution)
         : model_(model),
           plant_(model.tick().plant),
           world_(world),
-          surroundings_(world != nullptr ? world->numbers : model.nominal_world().numbers, {}, factor,
+          surroundings_(world != nullptr ? world->numbers : model.nominal_world().numbers, {}, effect,
                         model.tick().tilt_loss),
           execution_(execution) {}
 
@@ -109,7 +112,7 @@ class Recorder {
         }
         simulation::add_tick(execution_, plant_, before, next);
         const Rejection rejection = judge(next, next_reference);
-        execution_.clearance_integral += model_.tick().tick_s * simulation::clearance_density(clearance_m_);
+        execution_.clearance_integral += model_.tick().tick_s * clearance_density(clearance_m_);
         return rejection;
     }
 
@@ -132,10 +135,10 @@ class Recorder {
             const auto hub = dynamics::rotor_position(plant_, attitude, row.q[0], row.q[1], i);
             row.rotor_command_n[i] = given.command.thrust_n[i];
             row.rotor_lag_n[i] = state.plant.thrust_n[i];
-            row.rotor_factor[i] = surroundings_(i, hub.x, hub.z, attitude.sin_pitch);
+            row.rotor_factor[i] = surroundings_.thrust_ratio(i, hub, attitude.sin_pitch);
             row.thrust_command_n += row.rotor_command_n[i];
             row.pitch_torque_command_nm -= plant_.rotor_x_m[i] * row.rotor_command_n[i];
-            const double free_air_n = dynamics::free_air_thrust(surroundings_, i, thrust_n[i]);
+            const double free_air_n = surroundings_.thrust_scale(i) * thrust_n[i];
             row.thrust_n += row.rotor_factor[i] * free_air_n;
             row.pitch_torque_nm -= plant_.rotor_x_m[i] * row.rotor_factor[i] * free_air_n;
         }
@@ -153,7 +156,7 @@ class Recorder {
     const FlightModel& model_;
     const PlantModel& plant_;
     const FlownWorld* world_;
-    simulation::WorldSurroundings<double, Factor> surroundings_;
+    simulation::WorldSurroundings<double, simulation::FlightEffect> surroundings_;
     Execution& execution_;
     std::int64_t tick_ = 0;
     double clearance_m_ = std::numeric_limits<double>::infinity();
@@ -223,10 +226,9 @@ void judge_goals(const FlightModel& model, std::span<const Goal> goals, const st
     }
 }
 
-template <class Factor>
 Execution execute_with(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
                        std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over,
-                       Factor factor) {
+                       simulation::FlightEffect& effect) {
     const FlownWorld* const world = flown_world(model, in.world);
     Execution execution;
     execution.aero = aero;
@@ -234,7 +236,8 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     execution.has_rotor_lag = model.tick().plant.rotor_time_constant_s > 0;
     execution.min_clearance_m = std::numeric_limits<double>::infinity();
 
-    Recorder<Factor> recorder(model, world, factor, execution);
+    Recorder recorder(model, world, effect, execution);
+    const simulation::FlightLoop loop(model.tick(), world, effect);
     FlightState state = start;
     ReferencePoint reference = knots.front().point;
     Rejection rejection = recorder.judge(state, reference, true);
@@ -252,10 +255,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
             reference = next_reference;
             return recorder.after_tick(before, at, given, next, next_reference);
         };
-        rejection = world == nullptr
-                        ? simulation::fly_ticks(model.tick(), segment, factor, dynamics::RefinedStep{}, state, after)
-                        : simulation::fly_ticks(model.tick(), *world, in.first_tick + recorder.ticks(), segment, factor,
-                                                dynamics::RefinedStep{}, state, after);
+        rejection = loop.fly(in.first_tick + recorder.ticks(), segment, state, after, dynamics::RefinedStep{});
     }
     const Touch* const touch = ends.size() == goals.size()
                                    ? touch_at(goals.back(), model.tick().plant, level_at(configuration_of(reference)))
@@ -264,7 +264,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
         recorder.expect(*touch);
         execution.touch.emplace();
         rejection = simulation::fly_touch_ticks(
-            model, world, in.first_tick + recorder.ticks(), *touch, reference, factor, state, *execution.touch,
+            model, world, in.first_tick + recorder.ticks(), *touch, reference, effect, state, *execution.touch,
             [&](const FlightState& before, const ReferencePoint& at, const Given& given, const FlightState& next,
                 const ReferencePoint& next_reference, const dynamics::ContactTickRecord& contact) {
                 if (recorder.ticks() % ticks_between_questions == 0) {
@@ -277,7 +277,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     // What the controller commands at the end is part of the last row; nothing is flown with it.
     if (execution.rows.empty() || are_within(state.plant, max_state)) {
         Given given{};
-        static_cast<void>(simulation::quiet_tick(model, state, reference, factor, given, dynamics::OneStep{}, world));
+        static_cast<void>(loop.quiet_tick(state, reference, given));
         recorder.add_row(state, reference, given);
     }
 
@@ -288,10 +288,13 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     return execution;
 }
 
-/// Calls fly(effect) with what acts on the rotors.
-template <class Fly>
-auto with_effects(const FlightModel& model, bool aero, const Fly& fly) {
-    return aero && model.has_effects() ? fly(simulation::DirectFactor{model}) : fly(simulation::NoEffect{});
+/// What acts on the rotors.
+std::unique_ptr<simulation::FlightEffect> effect_of(const FlightModel& model, bool aero) {
+    using namespace simulation;
+    if (aero && model.has_effects()) {
+        return std::make_unique<FlightEffectOf<DirectField>>(DirectField(model));
+    }
+    return std::make_unique<FlightEffectOf<NoEffect>>(NoEffect{});
 }
 
 }  // namespace
@@ -357,9 +360,8 @@ Execution execute(const FlightModel& model, const FlightState& start, const std:
                   std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over,
                   std::optional<double> energy_budget_j) {
     assert(!knots.empty() && knots.front().tick == 0 && !goals.empty());
-    Execution execution = with_effects(model, aero, [&](auto effect) {
-        return execute_with(model, start, knots, goals, aero && model.has_effects(), in, is_over, effect);
-    });
+    Execution execution =
+        execute_with(model, start, knots, goals, aero && model.has_effects(), in, is_over, *effect_of(model, aero));
     if (execution.outcome == Outcome::ok && energy_budget_j && execution.energy_j > *energy_budget_j) {
         execution.outcome = Outcome::over_budget;
     }
@@ -376,13 +378,13 @@ std::optional<FlightState> hovering_start(const FlightModel& model, const Flight
     const FlownWorld quiet = without_noise(world);
     FlightState state = start;
     state.world = memory_at_start(quiet, start.plant);
-    const Rejection rejection = with_effects(model, aero, [&](auto effect) {
-        return simulation::fly_ticks(model.tick(), quiet, 0, hover, effect, dynamics::OneStep{}, state,
-                                     [&](const FlightState&, const ReferencePoint&, const Given&,
-                                         const FlightState& next, const ReferencePoint& reference) {
-                                         return is_stable(next, reference) ? Rejection::none : Rejection::unstable;
-                                     });
-    });
+    const std::unique_ptr<simulation::FlightEffect> effect = effect_of(model, aero);
+    const Rejection rejection = simulation::FlightLoop(model.tick(), &quiet, *effect)
+                                    .fly(0, hover, state,
+                                         [&](const FlightState&, const ReferencePoint&, const Given&,
+                                             const FlightState& next, const ReferencePoint& reference) {
+                                             return is_stable(next, reference) ? Rejection::none : Rejection::unstable;
+                                         });
     if (rejection != Rejection::none) {
         return std::nullopt;
     }

@@ -5,7 +5,9 @@
 
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/flight_loop.hpp"
-#include "downwash/simulation/flight_rules.hpp"
+#include "downwash/simulation/map_effect.hpp"
+#include "downwash/simulation/rule_checks.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
 namespace {
@@ -23,7 +25,7 @@ Rejection broken_rule(const FlightModel& model, const AeroMap* map, const Flight
         return static_cast<Rejection>(static_cast<int>(broken));
     }
     const PlanarPose pose = among_obstacles(pose_of(state), world);
-    if (map != nullptr && !simulation::is_flyable(model, *map, pose)) {
+    if (map != nullptr && !is_flyable(model, *map, pose)) {
         return Rejection::flyable_area;
     }
     if (model.collisions().is_nearer_than(pose, rules.margin_m) ||
@@ -33,9 +35,9 @@ Rejection broken_rule(const FlightModel& model, const AeroMap* map, const Flight
     return Rejection::none;
 }
 
-template <class Factor>
 SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
-                       const ReferenceSegment& segment, FlightState& state, const FlightWorld& in, Factor&& factor) {
+                       const ReferenceSegment& segment, FlightState& state, const FlightWorld& in,
+                       simulation::FlightEffect& effect) {
     const simulation::RuleLimits limits = simulation::rule_limits(rules, model.robot().arm);
     const FlownWorld* const world = flown_world(model, in.world);
     SegmentFlight flight;
@@ -51,15 +53,12 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
             const double clearance_m = model.collisions().clearance_m(among_obstacles(pose_of(next), world));
             flight.min_clearance_m = std::min(flight.min_clearance_m, clearance_m);
             if (rejection == Rejection::none && rules.measures_clearance) {
-                flight.clearance_integral += model.tick().tick_s * simulation::clearance_density(clearance_m);
+                flight.clearance_integral += model.tick().tick_s * clearance_density(clearance_m);
             }
         }
         return rejection;
     };
-    flight.rejection = world == nullptr
-                           ? simulation::fly_ticks(model.tick(), segment, factor, dynamics::OneStep{}, state, after)
-                           : simulation::fly_ticks(model.tick(), *world, in.first_tick, segment, factor,
-                                                   dynamics::OneStep{}, state, after);
+    flight.rejection = simulation::FlightLoop(model.tick(), world, effect).fly(in.first_tick, segment, state, after);
     return flight;
 }
 
@@ -76,10 +75,12 @@ bool is_stable(const FlightState& state, const ReferencePoint& reference) {
 SegmentFlight fly(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
                   const ReferenceSegment& segment, FlightState& state, const FlightWorld& in) {
     if (map == nullptr) {
-        return fly_with(model, map, rules, segment, state, in, simulation::NoEffect{});
+        simulation::FlightEffectOf effect{simulation::NoEffect{}};
+        return fly_with(model, map, rules, segment, state, in, effect);
     }
     const simulation::RotorMaps maps = simulation::rotor_maps(model, *map);
-    return fly_with(model, map, rules, segment, state, in, simulation::MapEffect<double>(maps));
+    simulation::FlightEffectOf effect{simulation::MapEffect<double>(maps)};
+    return fly_with(model, map, rules, segment, state, in, effect);
 }
 
 }  // namespace downwash

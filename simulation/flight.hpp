@@ -1,68 +1,21 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <limits>
-#include <optional>
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/reference_segment.hpp"
 #include "downwash/simulation/flight_model.hpp"
+#include "downwash/simulation/flight_rules.hpp"
 #include "downwash/simulation/flight_sums.hpp"
 
 namespace downwash {
-
-/// Why a flight was rejected or ended early.
-enum class Rejection : std::uint8_t {
-    none,
-    collision,     ///< nearer to an obstacle than allowed
-    flyable_area,  ///< a rotor disc nearer to an obstacle than the aerodynamic map reaches (docs/model.md 4.4)
-    saturation,    ///< a rotor or the joint was asked for more than it has
-    tracking,      ///< the vehicle or the arm was too far from its reference
-    unstable,      ///< tumbling, or numbers that are not finite
-    bounds,        ///< the centre of mass left the bounds
-    arm_limits,    ///< the arm left its limits
-    goal_missed,   ///< hovered at the goal but did not meet it
-    over_budget,   ///< a whole flight took more energy than it may
-    interrupted,   ///< ended from outside; says nothing about the flight
-};
-
-/// Beyond this pitch a multirotor is lost, whatever its controller does next [rad] (80 degrees).
-inline constexpr double unstable_pitch_rad = 1.3962634015954636;
-/// A flight that is farther than this from its reference has lost its plan [m].
-inline constexpr double unstable_error_m = 3.0;
-
-/// How far a robot may move between two collision checks [m]. If it keeps the margin at both, it touches nothing on the
-/// way, because each of its points stays within half of that distance from a checked pose. With a margin below 2.5 mm
-/// it may cut corners by this distance.
-[[nodiscard]] inline double max_unseen_motion_m(double margin_m) noexcept {
-    return std::max(2 * margin_m, 0.005);
-}
-
-/// By how much a FlightPool may overestimate the least clearance [m]: 5 %, and 5 mm where that is more.
-[[nodiscard]] constexpr double min_clearance_error_m(double clearance_m) noexcept {
-    return std::max(0.005, 0.05 * clearance_m);
-}
-
-/// The rules of a planned flight.
-struct FlightRules {
-    double margin_m = 0.05;             ///< least clearance, also between ticks: see max_unseen_motion_m
-    Bounds bounds;                      ///< of the centre of mass
-    double max_tracking_error_m = 0.3;  ///< distance of (x, z) from the reference
-    double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)
-    double max_saturation = 1;          ///< greatest demand on a rotor or the joint over its limit
-    double max_pitch_rate_rad_s = std::numeric_limits<double>::infinity();  ///< of the vehicle
-    std::function<bool()> is_over;     ///< polled now and then; true ends the flight as interrupted
-    bool measures_clearance = false;   ///< integrates clearance (slow), for the objective of that name
-    bool finds_min_clearance = false;  ///< of every flight, for certificates
-};
 
 /// The outcome of a flight along one segment.
 struct SegmentFlight : FlightSums {
     Rejection rejection = Rejection::none;
     std::int64_t ticks = 0;         ///< simulated, the rejected one included
-    double clearance_integral = 0;  ///< integral of dt / (clearance + 0.1 m) [s/m], when measured
+    double clearance_integral = 0;  ///< integral of clearance_density() over time [s/m], when measured
     /// Least clearance on control ticks, when wanted [m]: exact in fly(); in a FlightPool to min_clearance_error_m,
     /// from the beginning of the job on.
     double min_clearance_m = std::numeric_limits<double>::infinity();

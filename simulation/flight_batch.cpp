@@ -13,7 +13,6 @@
 #include "downwash/base/parallel.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
 #include "downwash/simulation/flight_lane.hpp"
-#include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/noise.hpp"
 
 namespace downwash {
@@ -72,12 +71,6 @@ FlightKernelModel make_kernel_model(const FlightSetting& setting) {
 }
 
 }  // namespace
-
-const FlightLeg* FlightJob::rejected_leg() const noexcept {
-    const auto refused = std::find_if(legs.begin(), legs.end(),
-                                      [](const FlightLeg& leg) { return leg.flight.rejection != Rejection::none; });
-    return refused != legs.end() ? &*refused : nullptr;
-}
 
 std::span<const Instructions> known_instructions() noexcept {
     static constexpr Instructions all[] = {Instructions::baseline, Instructions::avx2, Instructions::avx512};

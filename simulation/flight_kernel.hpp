@@ -3,9 +3,10 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "downwash/simulation/flight_rules.hpp"
+#include "downwash/scene/planar_pose.hpp"
 #include "downwash/simulation/map_effect.hpp"
 #include "downwash/simulation/motion_reach.hpp"
+#include "downwash/simulation/rule_checks.hpp"
 
 // The kernel that flies several edges side by side: plain arrays in, plain arrays out. flight_batch.cpp feeds it.
 

@@ -6,6 +6,7 @@
 #include "downwash/base/lane_pack.hpp"
 //
 #include "downwash/controllers/quintic.hpp"
+#include "downwash/simulation/closed_loop.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
 #include "downwash/simulation/noise.hpp"
 
@@ -17,17 +18,24 @@ using lane::PackMask;
 
 static_assert(lane_count % lane::pack_width == 0);
 
+/// An EffectField that knows where the vehicle may fly: `doubt(rotor, x_m, z_m)` is 0 in lanes whose hub is in a cell
+/// that is flyable throughout.
+template <class Field>
+concept KnowsFlyableArea = requires(Field& field, const Pack& at_m) {
+    field.doubt(0, at_m, at_m);
+};
+
 /// 0 where every hub is in a cell that is flyable throughout.
 /// @param scene_x_m,scene_z_m where the surfaces are, from where the map has them
-template <class Effect>
+template <KnowsFlyableArea Field>
 Pack flyable_doubt(const PlantModel& plant, const VehicleState<Pack>& state, const dynamics::Attitude<Pack>& a,
-                   Pack scene_x_m, Pack scene_z_m, Effect& effect) {
+                   Pack scene_x_m, Pack scene_z_m, Field& field) {
     Pack doubt(0);
     for (int rotor = 0; rotor < plant.rotor_count; ++rotor) {
-        if (effect.same_as(rotor) == rotor) {
+        if (field.same_as(rotor) == rotor) {
             const auto hub =
                 dynamics::rotor_position(plant, a, state.plant.q[0] - scene_x_m, state.plant.q[1] - scene_z_m, rotor);
-            doubt = lane::max(doubt, effect.doubt(rotor, hub.x, hub.z));
+            doubt = lane::max(doubt, field.doubt(rotor, hub.x, hub.z));
         }
     }
     return doubt;
@@ -107,9 +115,30 @@ requires controllers::is_aided<Flown>
     return {*static_cast<std::remove_reference_t<decltype(Flown::law)>*>(law)};
 }
 
+/// One tick of all lanes: tick_in_world() or tick().
 /// @tparam Law as what flies   @tparam is_in_worlds whether some flights are
-template <class Law, bool is_in_worlds, class Effect>
-void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks, Effect effect) {
+/// @param noise,world unused outside worlds   @param motion that of the state, unused in worlds
+template <bool is_in_worlds, class Law, class State, class Field>
+#if !defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// With narrow registers a tick with all that it calls in one place takes a sixth less. A processor with wide ones does
+// not come here, and what sanitizers add would keep the compiler busy for minutes.
+[[gnu::flatten]]
+#endif
+State
+tick_of_lanes(const TickModel& model, const Law& law, const WorldNumbers<Pack>& world, const Pack noise[noise_count],
+              const State& state, const dynamics::Motion<Pack>& motion, const BasicReferencePoint<Pack>& reference,
+              Field& field, controllers::Actuation<Pack>& given) {
+    if constexpr (is_in_worlds) {
+        return tick_in_world(model, law, world, noise, state, reference, field, given);
+    } else {
+        return tick(model, law, state, motion, reference, field, given);
+    }
+}
+
+/// Flies a group of lanes until one of them wants attention: see FlightKernel.
+/// @tparam Law as what flies   @tparam is_in_worlds whether some flights are
+template <class Law, bool is_in_worlds, class Field>
+void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks, Field field) {
     FlightLanes& lanes = group.lanes;
     const PackMask is_active = group.load(lanes.is_active) > Pack(0);
     if (!any(is_active)) {
@@ -141,15 +170,11 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
     }
     for (int n = 0; n < max_ticks; ++n) {
         controllers::Actuation<Pack> given;
-        decltype(state) next;
-        if constexpr (is_in_worlds) {
-            if (model.has_noise) {
-                draw_noises(model, group, first_tick + tick_count, noise);
-            }
-            next = tick_in_world(*model.tick, law, world, noise, state, reference, effect, given);
-        } else {
-            next = tick(*model.tick, law, state, motion, reference, effect, given);
+        if (is_in_worlds && model.has_noise) {
+            draw_noises(model, group, first_tick + tick_count, noise);
         }
+        const auto next =
+            tick_of_lanes<is_in_worlds>(*model.tick, law, world, noise, state, motion, reference, field, given);
         tick_count = tick_count + Pack(1);
         reference = reference_at(group, tick_count, Pack(model.tick->tick_s));
         add_tick(sums, plant, state, next);
@@ -168,14 +193,14 @@ void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_t
         const PackMask is_due =
             (motion_m(model.reach, anchor.q, state.plant.q) > free_motion_m) | (tick_count >= look_tick);
         unclear = select(is_due | !is_slow, Pack(1), Pack(0));
-        if constexpr (requires { effect.doubt(0, u[0], u[0]); }) {
+        if constexpr (KnowsFlyableArea<Field>) {
             Pack scene_x_m(0);
             Pack scene_z_m(0);
             if constexpr (is_in_worlds) {
                 scene_x_m = world.scene_x_m;
                 scene_z_m = world.scene_z_m;
             }
-            unclear = lane::max(unclear, flyable_doubt(plant, state, motion.attitude, scene_x_m, scene_z_m, effect));
+            unclear = lane::max(unclear, flyable_doubt(plant, state, motion.attitude, scene_x_m, scene_z_m, field));
         }
         if (any(is_active & ((rejection > Pack(0)) | (unclear > Pack(0)) | (tick_count >= ticks)))) {
             break;
@@ -219,7 +244,7 @@ fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks) {
 /// The kernel of a law with its aids; of a law that has none, its own.
 template <class Law>
 constexpr FlightKernel aided_kernel() {
-    if constexpr (controllers::can_be_aided<Law>) {
+    if constexpr (controllers::CanBeAided<Law>) {
         return fly_lanes<controllers::Aided<Law>>;
     } else {
         return fly_lanes<Law>;

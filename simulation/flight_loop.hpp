@@ -1,119 +1,65 @@
 #pragma once
 
-#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <variant>
 
-#include "downwash/simulation/flight.hpp"
-#include "downwash/simulation/map_effect.hpp"
-#include "downwash/simulation/noise.hpp"
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/actuation.hpp"
+#include "downwash/controllers/reference_segment.hpp"
+#include "downwash/dynamics/integration.hpp"
+#include "downwash/simulation/effect_field.hpp"
+#include "downwash/simulation/flight_rules.hpp"
+#include "downwash/simulation/tick_model.hpp"
+#include "downwash/simulation/vehicle_state.hpp"
+#include "downwash/simulation/world.hpp"
 
-// What planning and execution share: the loop over the ticks of a segment and the sources of surface effects.
+// One vehicle in closed loop. Law, effects, world and integration are chosen at run time, so that the tick is compiled
+// once for all that flies one vehicle at a time. Every number is that of the batched kernels to the last bit.
 
 namespace downwash::simulation {
 
-/// The effect, evaluated directly.
-struct DirectFactor {
-    const FlightModel& model;
-    /// K at the hub of a rotor, or of the body, in the plane.
-    double operator()(int rotor, double x_m, double z_m) const { return model.direct_factor(rotor, x_m, z_m); }
-    /// The same by side.
-    [[nodiscard]] SidedFactor<double> sided(int rotor, double x_m, double z_m) const {
-        return model.sided_factor(rotor, x_m, z_m);
-    }
+/// How the plant moves over a tick.
+using Integration =
+    std::variant<dynamics::OneStep, dynamics::RefinedStep, dynamics::ContactStep, dynamics::DisturbedStep>;
+
+/// What a tick led to, and what the controller commanded in it. Called after every tick; anything but Rejection::none
+/// ends the flight.
+using AfterTick = std::function<Rejection(const FlightState& before, const ReferencePoint& reference,
+                                          const controllers::Actuation<double>& given, const FlightState& next,
+                                          const ReferencePoint& next_reference)>;
+
+/// A vehicle in closed loop among surfaces, in a world.
+class DOWNWASH_EXPORT FlightLoop {
+ public:
+    /// @param world nullptr: the plain tick   @pre all of them outlive the loop
+    FlightLoop(const TickModel& model, const FlownWorld* world, FlightEffect& effect)
+        : model_(model), world_(world), effect_(effect) {}
+
+    /// The vehicle one tick later.
+    /// @param number of the tick, from the start of the whole flight, for the noise of the world
+    /// @param[out] given what the controller commanded
+    [[nodiscard]] FlightState tick(std::int64_t number, const FlightState& state, const ReferencePoint& reference,
+                                   controllers::Actuation<double>& given, const Integration& integration = {}) const;
+
+    /// The vehicle one tick later, without the noise and gusts of the world.
+    [[nodiscard]] FlightState quiet_tick(const FlightState& state, const ReferencePoint& reference,
+                                         controllers::Actuation<double>& given,
+                                         const Integration& integration = {}) const;
+
+    /// Flies a segment tick by tick until `after` finds a reason to end the flight.
+    /// @param first_tick of the segment, from the start of the whole flight
+    /// @param state vehicle at its beginning, replaced by the vehicle at the end
+    Rejection fly(std::int64_t first_tick, const ReferenceSegment& segment, FlightState& state, const AfterTick& after,
+                  const Integration& integration = {}) const;
+
+ private:
+    FlightState tick_with(const double* noise, const FlightState& state, const ReferencePoint& reference,
+                          controllers::Actuation<double>& given, const Integration& integration) const;
+
+    const TickModel& model_;
+    const FlownWorld* world_;
+    FlightEffect& effect_;
 };
-
-/// Integrand of the objective `clearance` [1/m].
-inline double clearance_density(double clearance_m) noexcept {
-    return 1 / ((clearance_m > 0 ? clearance_m : 0) + 0.1);
-}
-
-/// Whether a property holds at the hub of every rotor, given as (rotor, x_m, z_m) in the plane.
-template <class Predicate>
-bool all_rotors(const FlightModel& model, const PlanarPose& pose, const Predicate& predicate) {
-    const PlantModel& plant = model.tick().plant;
-    const auto attitude = dynamics::attitude(plant, pose.pitch_rad, pose.arm_rad);
-    for (int i = 0; i < plant.rotor_count; ++i) {
-        const auto hub = dynamics::rotor_position(plant, attitude, pose.x_m, pose.z_m, i);
-        if (!predicate(i, hub.x, hub.z)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-/// Whether every rotor of a vehicle at this pose is inside the flyable area of a map.
-inline bool is_flyable(const FlightModel& model, const AeroMap& map, const PlanarPose& pose) {
-    return all_rotors(model, pose, [&](int rotor, double x_m, double z_m) {
-        return map.is_flyable(model.rotor_layer(rotor), x_m, z_m);
-    });
-}
-
-/// One tick of a vehicle in a world, without its noise and gusts; surface effects are the nominal ones.
-/// @param factor,integrate see tick()   @param in nullptr: the nominal world
-template <class Factor, class Integrate = dynamics::OneStep>
-FlightState quiet_tick(const FlightModel& model, const FlightState& state, const ReferencePoint& reference,
-                       Factor&& factor, controllers::Actuation<double>& given, const Integrate& integrate = {},
-                       const FlownWorld* in = nullptr) {
-    const FlownWorld* const world = flown_world(model, in);
-    if (world == nullptr) {
-        return tick(model.tick(), state, reference, factor, given, integrate);
-    }
-    const double no_noise[noise_count] = {};
-    return controllers::visit_flown(model.tick().law, [&](const auto& law) {
-        return tick_in_world(model.tick(), law, world->numbers, no_noise, state, reference, factor, given, integrate);
-    });
-}
-
-/// Moves a vehicle along a segment until `after` finds a reason to end the flight.
-/// @param step callable (tick of the segment, state, reference, given) -> state one tick later
-/// @param after callable (before, reference, given, next, next_reference) -> Rejection
-template <class Step, class After>
-Rejection fly_steps(const ReferenceSegment& segment, FlightState& state, const Step& step, After&& after) {
-    ReferencePoint reference = segment.from();
-    Rejection rejection = Rejection::none;
-    for (std::int64_t t = 0; t < segment.ticks() && rejection == Rejection::none; ++t) {
-        controllers::Actuation<double> given{};
-        const FlightState next = step(t, state, reference, given);
-        const ReferencePoint next_reference = segment.at_tick(t + 1);
-        rejection = after(state, reference, given, next, next_reference);
-        state = next;
-        reference = next_reference;
-    }
-    return rejection;
-}
-
-/// Flies a segment in a world, tick by tick.
-/// @param effect see WorldSurroundings   @param after see fly_steps()
-template <class Effect, class Integrate, class After>
-Rejection fly_ticks(const TickModel& model, const FlownWorld& world, std::int64_t first_tick,
-                    const ReferenceSegment& segment, Effect&& effect, const Integrate& integrate, FlightState& state,
-                    After&& after) {
-    return controllers::visit_flown(model.law, [&](const auto& law) {
-        double noise[noise_count] = {};
-        const auto step = [&](std::int64_t t, const FlightState& from, const ReferencePoint& reference,
-                              controllers::Actuation<double>& given) {
-            if (world.has_noise) {
-                draw_noise(normal_levels(), world.world.tape, first_tick + t, noise, 1);
-            }
-            return tick_in_world(model, law, world.numbers, noise, from, reference, effect, given, integrate);
-        };
-        return fly_steps(segment, state, step, after);
-    });
-}
-
-/// Flies a segment by the plain tick.
-/// @param factor,integrate see tick()   @param after see fly_steps()
-template <class Factor, class Integrate, class After>
-Rejection fly_ticks(const TickModel& model, const ReferenceSegment& segment, Factor&& factor,
-                    const Integrate& integrate, FlightState& state, After&& after) {
-    return controllers::visit_flown(model.law, [&](const auto& law) {
-        const auto step = [&](std::int64_t, const FlightState& from, const ReferencePoint& reference,
-                              controllers::Actuation<double>& given) {
-            const VehicleState<double>& vehicle = from;
-            const auto motion = dynamics::motion_at(model.plant, vehicle.plant.q, vehicle.plant.u);
-            return FlightState{tick(model, law, vehicle, motion, reference, factor, given, integrate), from.world};
-        };
-        return fly_steps(segment, state, step, after);
-    });
-}
 
 }  // namespace downwash::simulation

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "downwash/aeromap/map_cache.hpp"
+#include "downwash/controllers/control.hpp"
 
 namespace downwash {
 namespace {
@@ -39,26 +40,24 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
         tick_.plant.wall_force = aero.wall.force;
         tick_.plant.wall_moment_m = aero.wall.moment * robot.rotors.radius_m;
     }
-    EffectLayers effects = effect_layers(robot.rotors, scene, aero, plane.heading_rad());
-    layers_ = std::move(effects.layers);
-    std::copy(effects.layer_of.begin(), effects.layer_of.end(), rotor_layer_);
+    layers_ = effect_layers(robot.rotors, scene, aero, plane.heading_rad());
 }
 
 std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int threads,
                                                      const std::function<void(double)>& on_progress,
                                                      const std::filesystem::path& cache,
                                                      const StopCondition& is_over) const {
-    return cached_map(cache, layers_, plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress, is_over);
+    return cached_map(cache, layers(), plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress, is_over);
 }
 
 std::shared_ptr<const AeroMap> FlightModel::remake_map(const AeroMap& before, const std::vector<Scene::Bounds>& changed,
                                                        int threads, const StopCondition& is_over) const {
-    return std::make_shared<const AeroMap>(before.rebuilt(layers_, changed, threads, is_over));
+    return std::make_shared<const AeroMap>(before.rebuilt(layers(), changed, threads, is_over));
 }
 
 bool FlightModel::is_mine(const AeroMap& map, const Bounds& bounds) const {
     return map_key(map.layers(), map.plane(), map.extent()) ==
-           map_key(layers_, plane_, rotor_extent(robot_.rotors, bounds));
+           map_key(layers(), plane_, rotor_extent(robot_.rotors, bounds));
 }
 
 Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds) {
@@ -78,10 +77,11 @@ EffectLayers effect_layers(const RotorParameters& rotors, const std::shared_ptr<
         const auto found = std::find_if(all.layers.begin(), all.layers.end(), [&](const MapLayer& layer) {
             return layer.effect == effect && layer.lateral_m == lateral_m;
         });
-        all.layer_of.push_back(static_cast<std::size_t>(found - all.layers.begin()));
+        const auto number = static_cast<std::size_t>(found - all.layers.begin());
         if (found == all.layers.end()) {
             all.layers.push_back({effect, lateral_m});
         }
+        return number;
     };
     for (std::size_t i = 0; i < hubs_m.size(); ++i) {
         const RotorNeighbours neighbours =
@@ -92,7 +92,7 @@ EffectLayers effect_layers(const RotorParameters& rotors, const std::shared_ptr<
                                  std::make_shared<const DirectEffect>(scene, aero, rotors.radius_m, neighbours));
             known = std::prev(effects.end());
         }
-        find_or_add(known->second, hubs_m[i][1]);
+        all.of_rotor.push_back(find_or_add(known->second, hubs_m[i][1]));
     }
     Vector3 center_m{0, 0, 0};
     for (const Vector3& hub_m : hubs_m) {
@@ -101,19 +101,19 @@ EffectLayers effect_layers(const RotorParameters& rotors, const std::shared_ptr<
         }
     }
     if (has_fountain(aero)) {
-        find_or_add(std::make_shared<const DirectEffect>(DirectEffect::fountain(
-                        scene, aero, rotors.radius_m, neighbours_of(hubs_m, 0, rotors.radius_m, heading_rad))),
-                    center_m[1]);
+        all.of_body =
+            find_or_add(std::make_shared<const DirectEffect>(DirectEffect::fountain(
+                            scene, aero, rotors.radius_m, neighbours_of(hubs_m, 0, rotors.radius_m, heading_rad))),
+                        center_m[1]);
     }
     if (has_walls(aero)) {
-        all.layer_of.resize(hubs_m.size() + 1, 0);
         double reach_m = 0;
         for (const Vector3& hub_m : hubs_m) {
             reach_m = std::max(reach_m, std::abs(hub_m[0] - center_m[0]));
         }
-        find_or_add(std::make_shared<const DirectEffect>(
-                        DirectEffect::walls(scene, aero, rotors.radius_m, reach_m, heading_rad)),
-                    center_m[1]);
+        all.of_walls = find_or_add(std::make_shared<const DirectEffect>(
+                                       DirectEffect::walls(scene, aero, rotors.radius_m, reach_m, heading_rad)),
+                                   center_m[1]);
     }
     return all;
 }

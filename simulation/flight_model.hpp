@@ -3,20 +3,34 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/scene/collision_checker.hpp"
-#include "downwash/simulation/closed_loop.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/robot.hpp"
+#include "downwash/simulation/tick_model.hpp"
+#include "downwash/simulation/vehicle_state.hpp"
 #include "downwash/simulation/world.hpp"
 
 namespace downwash {
 
-/// The state of a flight, one lane wide.
-using FlightState = simulation::State<double>;
+/// The distinct combinations of lateral offset and surface effect among the rotors of a vehicle, of its body where the
+/// ground model has a fountain, and of walls where they act.
+struct EffectLayers {
+    std::vector<MapLayer> layers;
+    std::vector<std::size_t> of_rotor;    ///< number of every rotor's layer
+    std::optional<std::size_t> of_body;   ///< empty without a fountain
+    std::optional<std::size_t> of_walls;  ///< empty without walls
+};
+/// Those of a vehicle in a scene; rotors that share offset and effect share a layer.
+/// @param heading_rad of the plane of motion, for the models that see a rotor's neighbours, and for walls
+[[nodiscard]] DOWNWASH_EXPORT EffectLayers effect_layers(const RotorParameters& rotors,
+                                                         const std::shared_ptr<const Scene>& scene,
+                                                         const AeroSettings& aero, double heading_rad = 0);
 
 /// A robot in its world: everything that a flight needs and never changes. Safe to share between threads.
 class DOWNWASH_EXPORT FlightModel {
@@ -36,24 +50,35 @@ class DOWNWASH_EXPORT FlightModel {
         return robot_.controller.delay_s == 0 && !tick_.plant.has_drag;
     }
     [[nodiscard]] const CollisionChecker& collisions() const noexcept { return collisions_; }
-    /// The surface effect on rotor i, or on tick().plant.body(), or that of walls() (see rotor_wrench).
-    [[nodiscard]] const DirectEffect& effect(int rotor) const noexcept { return *layers_[rotor_layer_[rotor]].effect; }
-    /// The effect with its place beside the plane, as a map stores it.
-    [[nodiscard]] const MapLayer& layer(int rotor) const noexcept { return layers_[rotor_layer_[rotor]]; }
-    /// Distance of rotor i, or of the body, to the left of the plane [m].
-    [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return layers_[rotor_layer_[rotor]].lateral_m; }
-    /// Number of its layer in the aero map, from 0.
-    [[nodiscard]] std::size_t rotor_layer(int rotor) const noexcept { return rotor_layer_[rotor]; }
+    /// The layers of surface effects: those that a map of this model has.
+    [[nodiscard]] const std::vector<MapLayer>& layers() const noexcept { return layers_.layers; }
+    /// Number of the layer of rotor i.
+    [[nodiscard]] std::size_t rotor_layer(int rotor) const noexcept {
+        return layers_.of_rotor[static_cast<std::size_t>(rotor)];
+    }
+    /// Number of the layer of the body. @pre tick().plant.has_fountain
+    [[nodiscard]] std::size_t body_layer() const noexcept { return *layers_.of_body; }
+    /// Number of the layer of walls, which is 1 more than how near they are. @pre tick().plant.has_walls
+    [[nodiscard]] std::size_t wall_layer() const noexcept { return *layers_.of_walls; }
+    /// The surface effect on rotor i with its place beside the plane, as a map stores it.
+    [[nodiscard]] const MapLayer& layer(int rotor) const noexcept { return layers()[rotor_layer(rotor)]; }
+    [[nodiscard]] const DirectEffect& effect(int rotor) const noexcept { return *layer(rotor).effect; }
+    /// Distance of rotor i to the left of the plane [m].
+    [[nodiscard]] double rotor_lateral_m(int rotor) const noexcept { return layer(rotor).lateral_m; }
     [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
     /// Whether surfaces act on the rotors at all.
-    [[nodiscard]] bool has_effects() const noexcept { return layers_.front().effect->settings().enabled; }
-    /// K of a level rotor, evaluated exactly at a hub in plane coordinates.
-    [[nodiscard]] double direct_factor(int rotor, double x_m, double z_m) const {
-        return effect(rotor).factor(plane_.to_world(x_m, rotor_lateral_m(rotor), z_m));
+    [[nodiscard]] bool has_effects() const noexcept { return layers().front().effect->settings().enabled; }
+    /// K by side in a layer, of a level vehicle, evaluated exactly at a point in plane coordinates.
+    [[nodiscard]] SidedFactor<double> factor_in_layer(std::size_t layer, double x_m, double z_m) const {
+        return layers()[layer].effect->sided_factor(plane_.to_world(x_m, layers()[layer].lateral_m, z_m));
     }
-    /// The same by side.
+    /// K by side of level rotor i with its hub there.
     [[nodiscard]] SidedFactor<double> sided_factor(int rotor, double x_m, double z_m) const {
-        return effect(rotor).sided_factor(plane_.to_world(x_m, rotor_lateral_m(rotor), z_m));
+        return factor_in_layer(rotor_layer(rotor), x_m, z_m);
+    }
+    /// K of level rotor i with its hub there.
+    [[nodiscard]] double direct_factor(int rotor, double x_m, double z_m) const {
+        return sided_factor(rotor, x_m, z_m).all;
     }
 
     /// The map over every rotor position that a vehicle within the bounds can reach, at any pitch.
@@ -83,8 +108,7 @@ class DOWNWASH_EXPORT FlightModel {
     simulation::TickModel tick_;
     FlownWorld nominal_world_;
     CollisionChecker collisions_;
-    std::vector<MapLayer> layers_;
-    std::size_t rotor_layer_[max_rotors + 2] = {};
+    EffectLayers layers_;
 };
 
 /// The world of a flight.
@@ -109,18 +133,6 @@ struct FlightWorld {
 
 /// Every rotor position that a vehicle within the bounds can reach, at any pitch.
 [[nodiscard]] DOWNWASH_EXPORT Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds);
-
-/// The distinct combinations of lateral offset and surface effect among the rotors of a vehicle, of its body where the
-/// ground model has a fountain, and of walls where they act.
-struct EffectLayers {
-    std::vector<MapLayer> layers;
-    std::vector<std::size_t> layer_of;  ///< of every rotor; then of the body (0 without a fountain); then of walls
-};
-/// Those of a vehicle in a scene; rotors that share offset and effect share a layer.
-/// @param heading_rad of the plane of motion, for the models that see a rotor's neighbours, and for walls
-[[nodiscard]] DOWNWASH_EXPORT EffectLayers effect_layers(const RotorParameters& rotors,
-                                                         const std::shared_ptr<const Scene>& scene,
-                                                         const AeroSettings& aero, double heading_rad = 0);
 
 /// The pose whose collisions a state stands for.
 [[nodiscard]] inline PlanarPose pose_of(const FlightState& state) noexcept {

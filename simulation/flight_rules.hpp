@@ -1,82 +1,62 @@
 #pragma once
 
-#include <cmath>
+#include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <limits>
 
-#include "downwash/simulation/closed_loop.hpp"
-#include "downwash/simulation/flight.hpp"
+#include "downwash/base/bounds.hpp"
 
-// The rules of a planned flight that need nothing but the numbers of one tick, one template over the lane type.
+namespace downwash {
 
-namespace downwash::simulation {
-
-/// FlightRules as plain numbers.
-struct RuleLimits {
-    double x_low_m, x_high_m, z_low_m, z_high_m;
-    double arm_low_rad, arm_high_rad;  ///< infinite without limits
-    double max_tracking_error_m, max_arm_error_rad;
-    double max_saturation;
-    double max_pitch_rate_rad_s;
+/// Why a flight was rejected or ended early.
+enum class Rejection : std::uint8_t {
+    none,
+    collision,     ///< nearer to an obstacle than allowed
+    flyable_area,  ///< a rotor disc nearer to an obstacle than the aerodynamic map reaches (docs/model.md 4.4)
+    saturation,    ///< a rotor or the joint was asked for more than it has
+    tracking,      ///< the vehicle or the arm was too far from its reference
+    unstable,      ///< tumbling, or numbers that are not finite
+    bounds,        ///< the centre of mass left the bounds
+    arm_limits,    ///< the arm left its limits
+    goal_missed,   ///< hovered at the goal but did not meet it
+    over_budget,   ///< a whole flight took more energy than it may
+    interrupted,   ///< ended from outside; says nothing about the flight
 };
 
-/// Those of a flight with this arm. An arm that does not move has no limits to leave: its joint only holds it.
-inline RuleLimits rule_limits(const FlightRules& rules, const ArmParameters& arm) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    const bool has_limits = arm.is_limited && arm.lower_limit_rad < arm.upper_limit_rad;
-    return {rules.bounds.x_low_m,
-            rules.bounds.x_high_m,
-            rules.bounds.z_low_m,
-            rules.bounds.z_high_m,
-            has_limits ? arm.lower_limit_rad : -infinity,
-            has_limits ? arm.upper_limit_rad : infinity,
-            rules.max_tracking_error_m,
-            rules.max_arm_error_rad,
-            rules.max_saturation,
-            rules.max_pitch_rate_rad_s};
+/// Beyond this pitch a multirotor is lost, whatever its controller does next [rad] (80 degrees).
+inline constexpr double unstable_pitch_rad = 1.3962634015954636;
+/// A flight that is farther than this from its reference has lost its plan [m].
+inline constexpr double unstable_error_m = 3.0;
+
+/// How far a robot may move between two collision checks [m]. If it keeps the margin at both, it touches nothing on the
+/// way, because each of its points stays within half of that distance from a checked pose. With a margin below 2.5 mm
+/// it may cut corners by this distance.
+[[nodiscard]] inline double max_unseen_motion_m(double margin_m) noexcept {
+    return std::max(2 * margin_m, 0.005);
 }
 
-/// Distance of the vehicle from its reference in (x, z) [m].
-template <class T>
-T tracking_error(const VehicleState<T>& state, const BasicReferencePoint<T>& reference) {
-    const T dx = reference.position[0] - state.plant.q[0];
-    const T dz = reference.position[1] - state.plant.q[1];
-    return lane::sqrt(dx * dx + dz * dz);
+/// By how much a FlightPool may overestimate the least clearance [m]: 5 %, and 5 mm where that is more.
+[[nodiscard]] constexpr double min_clearance_error_m(double clearance_m) noexcept {
+    return std::max(0.005, 0.05 * clearance_m);
 }
 
-/// How far beyond stability: positive where a number is not finite, or the vehicle tumbles or runs away.
-template <class T>
-T instability(const VehicleState<T>& state, T tracking_error_m) {
-    T sum(0);  // not finite as soon as one number is not
-    for (int i = 0; i < 4; ++i) {
-        sum = sum + lane::abs(state.plant.q[i]) + lane::abs(state.plant.u[i]);
-    }
-    const T excess =
-        lane::max(lane::abs(state.plant.q[2]) - T(unstable_pitch_rad), tracking_error_m - T(unstable_error_m));
-    return lane::select(sum < T(1e4), excess, T(1));
+/// The rules of a planned flight.
+struct FlightRules {
+    double margin_m = 0.05;             ///< least clearance, also between ticks: see max_unseen_motion_m
+    Bounds bounds;                      ///< of the centre of mass
+    double max_tracking_error_m = 0.3;  ///< distance of (x, z) from the reference
+    double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)
+    double max_saturation = 1;          ///< greatest demand on a rotor or the joint over its limit
+    double max_pitch_rate_rad_s = std::numeric_limits<double>::infinity();  ///< of the vehicle
+    std::function<bool()> is_over;     ///< polled now and then; true ends the flight as interrupted
+    bool measures_clearance = false;   ///< integrates clearance (slow), for the objective of that name
+    bool finds_min_clearance = false;  ///< of every flight, for certificates
+};
+
+/// Integrand of the objective `clearance` [1/m].
+[[nodiscard]] inline double clearance_density(double clearance_m) noexcept {
+    return 1 / ((clearance_m > 0 ? clearance_m : 0) + 0.1);
 }
 
-/// The first of the rules unstable, saturation, tracking, bounds and arm limits that the end of a tick breaks, as the
-/// number of its Rejection; 0 for none.
-/// @param saturation of the tick   @param state,reference at its end
-template <class T>
-T broken_rule(const RuleLimits& limits, T saturation, const VehicleState<T>& state,
-              const BasicReferencePoint<T>& reference) {
-    const auto number_of = [](Rejection rejection) { return T(static_cast<double>(rejection)); };
-    const T* q = state.plant.q;
-    const T error_m = tracking_error(state, reference);
-    const T beyond_bounds = lane::max(lane::max(T(limits.x_low_m) - q[0], q[0] - T(limits.x_high_m)),
-                                      lane::max(T(limits.z_low_m) - q[1], q[1] - T(limits.z_high_m)));
-    const T beyond_arm = lane::max(T(limits.arm_low_rad) - q[3], q[3] - T(limits.arm_high_rad));
-    const T beyond_tracking = lane::max(error_m - T(limits.max_tracking_error_m),
-                                        lane::abs(reference.position[2] - q[3]) - T(limits.max_arm_error_rad));
-    T rejection = lane::select(beyond_arm > T(0), number_of(Rejection::arm_limits), T(0));
-    rejection = lane::select(beyond_bounds > T(0), number_of(Rejection::bounds), rejection);
-    rejection = lane::select(beyond_tracking > T(0), number_of(Rejection::tracking), rejection);
-    // Not a number either: a limit of the actuators may have hidden that nothing sensible was asked of them.
-    rejection = lane::select(saturation <= T(limits.max_saturation), rejection, number_of(Rejection::saturation));
-    const T beyond_stability =
-        lane::max(instability(state, error_m), lane::abs(state.plant.u[2]) - T(limits.max_pitch_rate_rad_s));
-    return lane::select(beyond_stability > T(0), number_of(Rejection::unstable), rejection);
-}
-
-}  // namespace downwash::simulation
+}  // namespace downwash

@@ -7,8 +7,12 @@
 #include <limits>
 
 #include "downwash/base/portable_math.hpp"
+#include "downwash/dynamics/flight_step.hpp"
+#include "downwash/simulation/effect_slope.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_trim.hpp"
+#include "downwash/simulation/rotor_hubs.hpp"
+#include "downwash/simulation/surroundings.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
@@ -33,14 +37,17 @@ using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, state_
 
 /// Of one tick at its fixed point, by central differences of those numbers of the state that feed back. The effect is
 /// linear already, so that the step may be small: 1e-6 leaves an error of some 1e-10.
-Jacobian jacobian(const FlightModel& model, const HoverTrim& trim, const LinearEffect& effect) {
+Jacobian jacobian(const FlightModel& model, const HoverTrim& trim, LinearEffect& effect) {
     constexpr double step = 1e-6;
+    TickModel level = model.tick();
+    level.tilt_loss = no_tilt_loss;  // tangents are of a level vehicle
+    const simulation::FlightLoop loop(level, flown_world(model, nullptr), effect);
     const auto feeds_back = [&](int i) { return number_at<bool>(trim.feeds_back, i); };
     const auto after_change = [&](int i, double change) {
         FlightState state = trim.state;
         set_number_at(state, i, number_at<double>(state, i) + change);
         controllers::Actuation<double> given{};
-        return simulation::quiet_tick(model, state, trim.reference, effect, given);
+        return loop.quiet_tick(state, trim.reference, given);
     };
     Jacobian result(state_numbers, state_numbers);
     int columns = 0;
@@ -91,12 +98,12 @@ void find_modes(const Jacobian& jacobian, double tick_s, HoverStability& stabili
 }
 
 /// The slopes of the surfaces and the gains they compete with.
-void find_stiffness(const TickModel& model, const HoverTrim& trim, const LinearEffect& effect,
-                    HoverStability& stability) {
+void find_stiffness(const TickModel& model, const HoverTrim& trim, LinearEffect& effect, HoverStability& stability) {
     const PlantModel& plant = model.plant;
     const double* q = trim.state.plant.q;
+    const simulation::NominalSurroundings<double, LinearEffect> around(effect, no_tilt_loss);
     const auto wrench = [&](double z_m, double pitch_rad, const double* thrust_n) {
-        return dynamics::rotor_wrench(plant, dynamics::attitude(plant, pitch_rad, q[3]), q[0], z_m, thrust_n, effect);
+        return dynamics::rotor_wrench(plant, dynamics::attitude(plant, pitch_rad, q[3]), q[0], z_m, thrust_n, around);
     };
     constexpr double step = 1e-4;
     const double* command_n = trim.rotor_command_n;
@@ -166,9 +173,7 @@ HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, do
         return analysis;
     }
     const TickModel& tick = model.tick();
-    const auto attitude = dynamics::attitude(tick.plant, 0.0, arm_rad);
-    const LinearEffect effect(tick.plant, attitude, x_m, z_m, simulation::DirectFactor{model},
-                              controllers::aids_of(tick.law).feed_forward);
+    LinearEffect effect(model, pose);
     analysis.trim = simulation::hover_trim(model.robot(), tick, effect, model.state_at(pose));
     analysis.verdict = HoldVerdict::no_equilibrium;
     if (analysis.trim.limit != HoldLimit::none) {

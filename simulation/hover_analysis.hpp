@@ -4,9 +4,8 @@
 #include <string_view>
 
 #include "downwash/base/export.hpp"
-#include "downwash/controllers/reference_point.hpp"
-#include "downwash/controllers/rest.hpp"
 #include "downwash/simulation/flight_model.hpp"
+#include "downwash/simulation/hover_trim.hpp"
 
 namespace downwash {
 
@@ -24,23 +23,6 @@ enum class HoldVerdict : std::uint8_t {
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(HoldVerdict verdict);
 /// Name in files: "rotor_thrust".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(HoldLimit limit);
-
-/// How a vehicle hovers: the equilibrium of its closed loop near surfaces.
-struct HoverTrim {
-    HoldLimit limit = HoldLimit::none;  ///< anything else: there is no equilibrium; the other members show why
-    FlightState state{};                ///< fixed point of the tick: at rest and level, integrators settled
-    /// The reference that makes the controller hold the vehicle there. It differs from the vehicle's place on axes
-    /// without an integrator, and where an integrator has reached its limit.
-    ReferencePoint reference;
-    double rotor_command_n[max_rotors] = {};
-    double joint_torque_nm = 0;
-    double saturation = 0;           ///< greatest demand over its limit, as in a tick
-    double pitch_reference_rad = 0;  ///< that the controller asks for in vain, to counter the surfaces' torque
-    double height_gain_1_s2 = 0;     ///< vertical acceleration that the controller sets against a metre of error
-    double pitch_gain_1_s2 = 0;      ///< pitch acceleration that it sets against a radian of error
-    /// The numbers of the state on which later ticks depend: an integrator at its limit is none of them.
-    simulation::State<bool> feeds_back{};
-};
 
 /// How a small disturbance of a hover develops, and the stiffnesses that compete.
 struct HoverStability {

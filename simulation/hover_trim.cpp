@@ -4,6 +4,10 @@
 #include <cmath>
 #include <iterator>
 
+#include "downwash/controllers/control.hpp"
+#include "downwash/simulation/effect_slope.hpp"
+#include "downwash/simulation/surroundings.hpp"
+
 namespace downwash::simulation {
 namespace {
 
@@ -12,14 +16,15 @@ using dynamics::EquationsOfMotion;
 using dynamics::RotorWrench;
 
 /// The wrench to demand so that the wrench in effect is `wanted`: the effect is linear in the demand.
-RotorWrench<double> demand_for(const TickModel& model, const FlightState& at, const LinearEffect& effect,
+RotorWrench<double> demand_for(const TickModel& model, const FlightState& at, LinearEffect& effect,
                                const RotorWrench<double>& wanted) {
     const PlantModel& plant = model.plant;
     const auto attitude = dynamics::attitude(plant, at.plant.q[2], at.plant.q[3]);
+    const NominalSurroundings<double, LinearEffect> around(effect, no_tilt_loss);
     const auto acting = [&](double thrust_n, double pitch_torque_nm) {
         double command_n[max_rotors];
         command_rotors_at_rest(model, effect, at.plant, thrust_n, pitch_torque_nm, command_n);
-        return dynamics::rotor_wrench(plant, attitude, at.plant.q[0], at.plant.q[1], command_n, effect);
+        return dynamics::rotor_wrench(plant, attitude, at.plant.q[0], at.plant.q[1], command_n, around);
     };
     const RotorWrench<double> a = acting(1, 0);
     const RotorWrench<double> b = acting(0, 1);
@@ -30,21 +35,20 @@ RotorWrench<double> demand_for(const TickModel& model, const FlightState& at, co
 
 }  // namespace
 
-void command_rotors_at_rest(const TickModel& model, const LinearEffect& effect, const dynamics::PlantState<double>& at,
+void command_rotors_at_rest(const TickModel& model, LinearEffect& effect, const dynamics::PlantState<double>& at,
                             double thrust_n, double pitch_torque_nm, double (&command_n)[max_rotors]) {
     const std::optional<controllers::FeedForward> feed_forward = controllers::aids_of(model.law).feed_forward;
     if (!feed_forward) {
         dynamics::allocate(model.plant, thrust_n, pitch_torque_nm, command_n);
         return;
     }
-    const ReadEffect<double, const LinearEffect> map(effect, model.tilt_loss);
+    const NominalSurroundings<double, LinearEffect> map(effect.as_read(), no_tilt_loss);
     const auto attitude = dynamics::attitude(model.plant, at.q[2], at.q[3]);
     const auto ratios = controllers::read_ratios(*feed_forward, model.plant, at, attitude, map);
     controllers::allocate_against(model.plant, ratios, thrust_n, pitch_torque_nm, command_n);
 }
 
-HoverTrim hover_trim(const Robot& robot, const TickModel& model, const LinearEffect& effect,
-                     const FlightState& resting) {
+HoverTrim hover_trim(const Robot& robot, const TickModel& model, LinearEffect& effect, const FlightState& resting) {
     const PlantModel& plant = model.plant;
     HoverTrim trim;
     trim.state = resting;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/dynamics/flight_step.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
 
@@ -33,23 +34,18 @@ struct Disturbed {
 
     [[nodiscard]] Result operator()(const FlightState& state, double added) const {
         const PlantModel& plant = model.tick().plant;
-        const auto integrate = [&](const auto& flown, const auto& from, const auto& motion,
-                                   dynamics::PlantCommand<double> command, double dt_s, const auto& surroundings) {
-            if (input == LoopInput::joint_torque) {
-                command.joint_torque_nm += added;
-            } else {
-                double share_n[max_rotors] = {};
-                const bool is_thrust = input == LoopInput::thrust;
-                dynamics::allocate(plant, is_thrust ? added : 0.0, is_thrust ? 0.0 : added, share_n);
-                for (int i = 0; i < plant.rotor_count; ++i) {
-                    command.thrust_n[i] += share_n[i];
-                }
-            }
-            return dynamics::flight_step(flown, from, motion, command, dt_s, surroundings);
-        };
+        dynamics::DisturbedStep step{};
+        if (input == LoopInput::joint_torque) {
+            step.added.joint_torque_nm = added;
+        } else {
+            const bool is_thrust = input == LoopInput::thrust;
+            dynamics::allocate(plant, is_thrust ? added : 0.0, is_thrust ? 0.0 : added, step.added.thrust_n);
+        }
+        simulation::FlightEffectOf calm{simulation::NoEffect{}};
+        const simulation::FlightLoop loop(model.tick(), flown_world(model, nullptr), calm);
         controllers::Actuation<double> given{};
         Result result{};
-        result.next = simulation::quiet_tick(model, state, trim.reference, simulation::NoEffect{}, given, integrate);
+        result.next = loop.quiet_tick(state, trim.reference, given, step);
         for (int i = 0; i < plant.rotor_count; ++i) {
             result.commanded += input == LoopInput::thrust         ? given.command.thrust_n[i]
                                 : input == LoopInput::pitch_torque ? -plant.rotor_x_m[i] * given.command.thrust_n[i]

@@ -7,12 +7,19 @@ namespace downwash::simulation {
 
 RotorMaps rotor_maps(const FlightModel& model, const AeroMap& map) {
     const PlantModel& plant = model.tick().plant;
-    RotorMaps maps{&model, &map, {}, {}};
-    for (int i = 0; i < plant.rotor_count + (plant.has_fountain ? 1 : 0); ++i) {
-        maps.view[i] = map.view(model.rotor_layer(i));
+    RotorMaps maps{&map, {}, {}, {}};
+    const auto fill = [&](int place, std::size_t layer) {
+        maps.view[place] = map.view(layer);
+        maps.layer[place] = layer;
+    };
+    for (int i = 0; i < plant.rotor_count; ++i) {
+        fill(i, model.rotor_layer(i));
+    }
+    if (plant.has_fountain) {
+        fill(RotorMaps::body_place, model.body_layer());
     }
     if (plant.has_walls) {
-        maps.view[plant.walls()] = map.view(model.rotor_layer(plant.walls()));
+        fill(RotorMaps::wall_place, model.wall_layer());
     }
     for (int i = 0; i < plant.rotor_count; ++i) {
         maps.same_as[i] = i;
@@ -26,8 +33,8 @@ RotorMaps rotor_maps(const FlightModel& model, const AeroMap& map) {
     return maps;
 }
 
-SidedFactor<double> factor_outside(const RotorMaps& maps, int rotor, double x_m, double z_m) {
-    return maps.map->sided_factor(maps.model->rotor_layer(rotor), x_m, z_m);
+SidedFactor<double> factor_outside(const RotorMaps& maps, int place, double x_m, double z_m) {
+    return maps.map->sided_factor(maps.layer[place], x_m, z_m);
 }
 
 }  // namespace downwash::simulation

@@ -2,8 +2,10 @@
 
 #include <limits>
 
+#include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/map_effect.hpp"
 #include "downwash/simulation/touch_flight.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
 
@@ -28,18 +30,17 @@ TouchFlight fly_touch(const FlightModel& model, const AeroMap* map, const Touch&
         }
         pose_before = off;
         before_m = clearance_m;
-        return map != nullptr && !simulation::is_flyable(model, *map, pose) ? Rejection::flyable_area : Rejection::none;
+        return map != nullptr && !is_flyable(model, *map, pose) ? Rejection::flyable_area : Rejection::none;
     };
-    const auto fly = [&](auto&& effect) {
+    const auto fly = [&](simulation::FlightEffect&& effect) {
         flight.rejection =
             simulation::fly_touch_ticks(model, world, in.first_tick, touch, base, effect, state, flight.record, after);
     };
     if (map != nullptr) {
         const simulation::RotorMaps maps = simulation::rotor_maps(model, *map);
-        simulation::MapEffect<double> effect(maps);
-        fly(effect);
+        fly(simulation::FlightEffectOf{simulation::MapEffect<double>(maps)});
     } else {
-        fly(simulation::NoEffect{});
+        fly(simulation::FlightEffectOf{simulation::NoEffect{}});
     }
     return flight;
 }

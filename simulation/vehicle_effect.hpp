@@ -20,5 +20,7 @@ struct VehicleEffect {
 
 /// Whether every rotor of a vehicle at this pose is inside the flyable area (docs/model.md 4.4), decided exactly.
 [[nodiscard]] DOWNWASH_EXPORT bool is_flyable(const FlightModel& model, const PlanarPose& pose);
+/// Whether a map has every rotor of a vehicle at this pose inside its flyable area.
+[[nodiscard]] DOWNWASH_EXPORT bool is_flyable(const FlightModel& model, const AeroMap& map, const PlanarPose& pose);
 
 }  // namespace downwash

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 
 #include "downwash/base/export.hpp"
-#include "downwash/simulation/closed_loop.hpp"
+#include "downwash/dynamics/plant_state.hpp"
 #include "downwash/simulation/robot.hpp"
+#include "downwash/simulation/world_numbers.hpp"
 
 namespace downwash {
 

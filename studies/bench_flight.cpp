@@ -17,13 +17,19 @@ constexpr double degree = std::numbers::pi / 180;
 constexpr double tick_s = 0.01;
 constexpr int front_rotor = 1;  // see make_quadrotor()
 
-/// K of the rotors: only one may have a plate below.
-struct PlateUnderOne {
-    const EffectCurve* curve;
+/// Only one of the rotors may have a plate below.
+struct PlateUnderOne : dynamics::CalmSpace {
+    PlateUnderOne(const EffectCurve& the_curve, double plate_at_m, double rotor_radius_m, bool is_plate_there)
+        : curve(the_curve), plate_m(plate_at_m), radius_m(rotor_radius_m), is_there(is_plate_there) {}
+
+    const EffectCurve& curve;
     double plate_m, radius_m;
     bool is_there;
-    double operator()(int rotor, double /*x_m*/, double /*y_m*/, double z_m) const {
-        return is_there && rotor == front_rotor ? (*curve)(std::max(0.0, z_m - plate_m) / radius_m) : 1.0;
+    [[nodiscard]] double factor(int rotor, double z_m) const {
+        return is_there && rotor == front_rotor ? curve(std::max(0.0, z_m - plate_m) / radius_m) : 1.0;
+    }
+    [[nodiscard]] double thrust_ratio(int rotor, const dynamics::LaneVector<double>& hub_m) const {
+        return factor(rotor, hub_m.z);
     }
 };
 
@@ -68,8 +74,8 @@ BenchFlight fly(const BenchExperiment& e) {
         const double time_s = static_cast<double>(tick) * tick_s;
         flight.time_s.push_back(time_s);
         flight.pitch_deg.push_back(state.pitch_rad / degree);
-        const PlateUnderOne plate{&curve, -e.z_over_r * e.vehicle.radius_m, e.vehicle.radius_m,
-                                  time_s >= e.plate_from_s && time_s < e.plate_to_s};
+        const PlateUnderOne plate(curve, -e.z_over_r * e.vehicle.radius_m, e.vehicle.radius_m,
+                                  time_s >= e.plate_from_s && time_s < e.plate_to_s);
         // Momentum form of thesis (3.9): the estimate follows what the momentum has beyond the torques given.
         const double momentum = e.vehicle.pitch_inertia_kg_m2 * state.pitch_rate_rad_s;
         if (e.aid == BenchAid::observer) {
@@ -87,7 +93,7 @@ BenchFlight fly(const BenchExperiment& e) {
         for (int i = 0; i < 4; ++i) {
             if (e.aid == BenchAid::feed_forward) {
                 const double rise_m = i == front_rotor ? -e.vehicle.arm_m * std::sin(state.pitch_rad) : 0;
-                thrust_n[i] /= plate(i, 0, 0, rise_m);
+                thrust_n[i] /= plate.factor(i, rise_m);
             }
             thrust_n[i] = std::clamp(thrust_n[i], 0.0, weight_n / 2);
         }

@@ -6,7 +6,7 @@
 
 #include "downwash/controllers/lyapunov.hpp"
 #include "downwash/controllers/pid.hpp"
-#include "downwash/dynamics/ceiling_contact.hpp"
+#include "downwash/dynamics/ceiling_tick.hpp"
 #include "downwash/dynamics/quadrotor.hpp"
 #include "downwash/effects/effect_curve.hpp"
 #include "downwash/simulation/noise.hpp"
@@ -106,7 +106,7 @@ CeilingFlight fly(const CeilingExperiment& e) {
     const SpaceModel<0> model = make_space_model<0>(plant_of(e.vehicle));
     const SpaceAllocation allocation = make_space_allocation(model);
     const dynamics::CeilingContact contact = frame_of(e.vehicle);
-    const UnderWideCeiling factor{e.vehicle};
+    const UnderWideCeiling around(e.vehicle);
     const double frame_m = e.vehicle.rotor_height_m + e.vehicle.guard_m;  // over the centre of mass
     const double weight_n = e.vehicle.mass_kg * standard_gravity_m_s2;
 
@@ -178,7 +178,7 @@ CeilingFlight fly(const CeilingExperiment& e) {
         flight.reference_climb_m_s.push_back(reference.climb_m_s);
         flight.command_over_weight.push_back(sum_n / weight_n);
         flight.ceiling_factor.push_back(ceiling_factor_at(e.vehicle, e.vehicle.guard_m - height_m));
-        const auto next = dynamics::contact_tick(model, contact, state, command, tick_s, factor);
+        const auto next = dynamics::contact_tick(model, contact, state, command, tick_s, around);
         flight.max_depth_m = std::max(flight.max_depth_m, next.max_depth_m);
         state = next.state;
     }

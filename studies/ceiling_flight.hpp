@@ -7,6 +7,7 @@
 #include "downwash/base/export.hpp"
 #include "downwash/dynamics/ceiling_contact.hpp"
 #include "downwash/dynamics/space_plant.hpp"
+#include "downwash/dynamics/space_surroundings.hpp"
 
 // A quadrotor in space under a wide ceiling that it may touch: the flights of thesis 4.7.
 
@@ -79,11 +80,12 @@ struct CeilingFlight {
 /// K of (2.18) with the rotors `distance_m` below the ceiling.
 [[nodiscard]] DOWNWASH_EXPORT double ceiling_factor_at(const CeilingVehicle& vehicle, double distance_m);
 
-/// K at every rotor, with the ceiling at z = 0: what rotor_wrench() in space asks for.
-struct UnderWideCeiling {
+/// The surroundings in space of a vehicle under a wide ceiling at z = 0.
+struct UnderWideCeiling : dynamics::CalmSpace {
+    explicit UnderWideCeiling(const CeilingVehicle& the_vehicle = {}) : vehicle(the_vehicle) {}
     CeilingVehicle vehicle;
-    double operator()(int /*rotor*/, double /*x_m*/, double /*y_m*/, double z_m) const {
-        return ceiling_factor_at(vehicle, -z_m);
+    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& hub_m) const {
+        return ceiling_factor_at(vehicle, -hub_m.z);
     }
 };
 

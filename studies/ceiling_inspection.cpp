@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "downwash/controllers/lyapunov.hpp"
-#include "downwash/dynamics/ceiling_contact.hpp"
+#include "downwash/dynamics/ceiling_tick.hpp"
 #include "downwash/simulation/noise.hpp"
 
 namespace downwash::studies {
@@ -134,7 +134,7 @@ CeilingInspectionFlight fly(const CeilingInspection& mission) {
     const SpaceModel<0> model = make_space_model<0>(plant_of(mission.vehicle));
     const SpaceAllocation allocation = make_space_allocation(model);
     const dynamics::CeilingContact contact = frame_of(mission.vehicle);
-    const UnderWideCeiling factor{mission.vehicle};
+    const UnderWideCeiling around(mission.vehicle);
     const double frame_m = mission.vehicle.rotor_height_m + mission.vehicle.guard_m;  // over the centre of mass
     const double weight_n = mission.vehicle.mass_kg * standard_gravity_m_s2;
     controllers::LyapunovLaw law;
@@ -167,9 +167,10 @@ CeilingInspectionFlight fly(const CeilingInspection& mission) {
                 command.thrust_n[rotor] = std::clamp(command.thrust_n[rotor], 0.0, weight_n / 2);
             }
             flight.time_s.push_back(static_cast<double>(tick) * tick_s);
-            flight.ceiling_factor.push_back(factor(0, 0, 0, state.q[2] + mission.vehicle.rotor_height_m));
+            flight.ceiling_factor.push_back(
+                ceiling_factor_at(mission.vehicle, -(state.q[2] + mission.vehicle.rotor_height_m)));
             record(state, frame_m, frame, demand, flight);
-            state = dynamics::contact_tick(model, contact, state, command, tick_s, factor).state;
+            state = dynamics::contact_tick(model, contact, state, command, tick_s, around).state;
         }
         judge(leg, begin, flight.time_s.size(), flight);
     }

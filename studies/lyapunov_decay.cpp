@@ -27,7 +27,8 @@ LyapunovDecay lyapunov_decay() {
     const auto command_at = [&](const dynamics::SpaceState<double, 0>& at) {
         const double acting_n = controllers::altitude_thrust(model, law, at.q[2], at.u[2], 1.0, target);
         dynamics::SpaceCommand<double, 0> command{};
-        controllers::lyapunov_thrusts(allocation, acting_n, {0.0, 0.0, 0.0}, ceiling(0, 0, 0, at.q[2] + rotor_height_m),
+        controllers::lyapunov_thrusts(allocation, acting_n, {0.0, 0.0, 0.0},
+                                      ceiling_factor_at(ceiling.vehicle, -(at.q[2] + rotor_height_m)),
                                       command.thrust_n);
         return command;
     };

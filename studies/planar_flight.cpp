@@ -7,6 +7,7 @@
 
 #include "downwash/effects/effect_curve.hpp"
 #include "downwash/effects/effect_table.hpp"
+#include "downwash/simulation/direct_field.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
@@ -102,33 +103,27 @@ PlanarFlight fly(const PlanarExperiment& e) {
     FlightState state = model.state_at({0, height_m, 0, 0});
     state.world = memory_at_start(world, state.plant);
     PlanarFlight flight;
-    const simulation::DirectFactor effect{model};
+    simulation::FlightEffectOf effect{simulation::DirectField(model)};
+    const simulation::FlightLoop loop(model.tick(), &world, effect);
     const auto ticks = static_cast<std::int64_t>(std::lround(e.duration_s * rate_hz));
-    controllers::visit_flown(model.tick().law, [&](const auto& law) {
-        for (std::int64_t tick = 0; tick <= ticks; ++tick) {
-            const double* q = state.plant.q;
-            flight.time_s.push_back(static_cast<double>(tick) / rate_hz);
-            flight.x_m.push_back(q[0]);
-            flight.z_m.push_back(q[1]);
-            flight.pitch_deg.push_back(q[2] / degree);
-            // Written so that NaN is lost too.
-            if (!(std::abs(q[2]) < 60 * degree && std::abs(q[1] - height_m) < 5 && std::abs(q[0]) < 50)) {
-                flight.is_lost = true;
-                break;
-            }
-            // A step of the reference, whose commanded speed is clipped: the position loop never sees more than it
-            // takes to ask for that speed.
-            const double ahead_m = e.speed_m_s / e.control.position_kp;
-            const double next_m = q[0] + std::clamp(e.target_m - q[0], -ahead_m, ahead_m);
-            double noise[simulation::noise_count] = {};
-            if (world.has_noise) {
-                simulation::draw_noise(simulation::normal_levels(), world.world.tape, tick, noise, 1);
-            }
-            controllers::Actuation<double> given{};
-            state = simulation::tick_in_world(model.tick(), law, world.numbers, noise, state,
-                                              at_rest({next_m, height_m, q[3]}), effect, given);
+    for (std::int64_t tick = 0; tick <= ticks; ++tick) {
+        const double* q = state.plant.q;
+        flight.time_s.push_back(static_cast<double>(tick) / rate_hz);
+        flight.x_m.push_back(q[0]);
+        flight.z_m.push_back(q[1]);
+        flight.pitch_deg.push_back(q[2] / degree);
+        // Written so that NaN is lost too.
+        if (!(std::abs(q[2]) < 60 * degree && std::abs(q[1] - height_m) < 5 && std::abs(q[0]) < 50)) {
+            flight.is_lost = true;
+            break;
         }
-    });
+        // A step of the reference, whose commanded speed is clipped: the position loop never sees more than it
+        // takes to ask for that speed.
+        const double ahead_m = e.speed_m_s / e.control.position_kp;
+        const double next_m = q[0] + std::clamp(e.target_m - q[0], -ahead_m, ahead_m);
+        controllers::Actuation<double> given{};
+        state = loop.tick(tick, state, at_rest({next_m, height_m, q[3]}), given);
+    }
     return flight;
 }
 

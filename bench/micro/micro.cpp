@@ -11,8 +11,10 @@
 #include "bridge.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/simulation/direct_field.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/map_effect.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
 using namespace downwash;
@@ -30,14 +32,15 @@ FlightState slot_start(const Bridge& bridge) {
     return bridge.model->state_at({-6, 9.0, 0, -0.6});
 }
 
-template <class Factor>
-void fly_ticks(benchmark::State& state, Factor&& factor) {
+template <class Field>
+void fly_ticks(benchmark::State& state, const Field& field) {
     const Bridge& bridge = Bridge::get();
+    simulation::FlightEffectOf effect{field};
+    const simulation::FlightLoop loop(bridge.model->tick(), nullptr, effect);
     std::int64_t ticks = 0;
     for ([[maybe_unused]] auto _ : state) {
         FlightState vehicle = slot_start(bridge);
-        simulation::fly_ticks(bridge.model->tick(), slot_segment(), factor, dynamics::OneStep{}, vehicle,
-                              [](const auto&...) { return Rejection::none; });
+        loop.fly(0, slot_segment(), vehicle, [](const auto&...) { return Rejection::none; });
         benchmark::DoNotOptimize(vehicle);
         ticks += slot_segment().ticks();
     }
@@ -51,12 +54,13 @@ BENCHMARK(tick_without_effect);
 
 void tick_with_map(benchmark::State& state) {
     const Bridge& bridge = Bridge::get();
-    fly_ticks(state, simulation::MapEffect<double>(simulation::rotor_maps(*bridge.model, *bridge.map)));
+    const simulation::RotorMaps maps = simulation::rotor_maps(*bridge.model, *bridge.map);
+    fly_ticks(state, simulation::MapEffect<double>(maps));
 }
 BENCHMARK(tick_with_map);
 
 void tick_with_direct_effect(benchmark::State& state) {
-    fly_ticks(state, simulation::DirectFactor{*Bridge::get().model});
+    fly_ticks(state, simulation::DirectField(*Bridge::get().model));
 }
 BENCHMARK(tick_with_direct_effect);
 

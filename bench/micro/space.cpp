@@ -47,23 +47,17 @@ SpaceModel<n> sample_model() {
     return make_space_model<n>(plant);
 }
 
-struct NoSurface {
-    template <class T>
-    T operator()(int /*rotor*/, const T& /*x_m*/, const T& /*y_m*/, const T& /*z_m*/) const {
-        return T(1);
-    }
-};
-
 /// Every lane asks for itself.
-struct InVolume {
+struct InVolume : dynamics::CalmSpace {
+    explicit InVolume(const VolumeMap& volume) : map(volume) {}
     const VolumeMap& map;
     template <class T>
-    T operator()(int /*rotor*/, const T& x_m, const T& y_m, const T& z_m) const {
+    T thrust_ratio(int /*rotor*/, const dynamics::LaneVector<T>& hub_m) const {
         T factors;
         for (int lane = 0; lane < lane::width<T>; ++lane) {
-            lane::set_number(
-                factors, lane,
-                map.factor({lane::number_in(x_m, lane), lane::number_in(y_m, lane), lane::number_in(z_m, lane)}));
+            lane::set_number(factors, lane,
+                             map.factor({lane::number_in(hub_m.x, lane), lane::number_in(hub_m.y, lane),
+                                         lane::number_in(hub_m.z, lane)}));
         }
         return factors;
     }
@@ -105,11 +99,11 @@ void fly_space_ticks(benchmark::State& state, const Surroundings& surroundings) 
 
 template <class T, int n>
 void space_tick(benchmark::State& state) {
-    fly_space_ticks<T, n>(state, NoSurface{});
+    fly_space_ticks<T, n>(state, dynamics::CalmSpace{});
 }
 template <class T, int n>
 void space_tick_with_map(benchmark::State& state) {
-    fly_space_ticks<T, n>(state, InVolume{volume()});
+    fly_space_ticks<T, n>(state, InVolume(volume()));
 }
 
 [[maybe_unused]] const bool space_ticks_are_registered = [] {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "downwash/simulation/direct_field.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 
 namespace downwash::bench {
@@ -29,9 +30,11 @@ DisturbedHover fly_disturbed(const FlightModel& model, const HoverTrim& trim, co
     double before = 0;
     double in_the_end = 0;
     double d = 0;
+    simulation::FlightEffectOf effect{simulation::DirectField(model)};
+    const simulation::FlightLoop loop(model.tick(), flown_world(model, nullptr), effect);
     for (int i = 0; i < ticks; ++i) {
         controllers::Actuation<double> given{};
-        state = simulation::quiet_tick(model, state, trim.reference, simulation::DirectFactor{model}, given);
+        state = loop.quiet_tick(state, trim.reference, given);
         d = distance(state, trim.state);
         if (!(d < disturbance.leaving)) {
             return {true, d};

@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "../support/random.hpp"
+#include "../support/single_tick.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/bench/ompl_user/closed_loop_ode.hpp"
 #include "downwash/bench/ompl_user/plain_collisions.hpp"
 #include "downwash/planner/solve.hpp"
-#include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/map_effect.hpp"
 
 using namespace downwash;
 using bench::ClosedLoopOde;
@@ -51,10 +52,12 @@ double worst_difference(const FlightModel& model, const AeroMap* map, const Conf
             reference.velocity[axis] = velocity[axis];
         }
         controllers::Actuation<double> given{};
-        vehicle = map != nullptr
-                      ? simulation::tick(model.tick(), vehicle, reference,
-                                         simulation::MapEffect<double>(simulation::rotor_maps(model, *map)), given)
-                      : simulation::tick(model.tick(), vehicle, reference, simulation::NoEffect{}, given);
+        if (map != nullptr) {
+            const simulation::RotorMaps maps = simulation::rotor_maps(model, *map);
+            vehicle = test::single_tick(model.tick(), vehicle, reference, given, simulation::MapEffect<double>(maps));
+        } else {
+            vehicle = test::single_tick(model.tick(), vehicle, reference, given);
+        }
         step(ode, velocity, model.tick().tick_s, state);
         for (std::size_t k = 0; k < 4; ++k) {
             worst = std::max(worst, std::abs(vehicle.plant.q[k] - state[k]));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "../support/random.hpp"
+#include "../support/surroundings.hpp"
 #include "downwash/controllers/lyapunov.hpp"
 #include "downwash/dynamics/quadrotor.hpp"
 
@@ -25,9 +26,12 @@ inline SpaceModel<0> sample() {
 }
 
 /// The same K everywhere.
-struct Even {
+struct Even : dynamics::CalmSpace {
+    explicit Even(double everywhere) : factor(everywhere) {}
     double factor;
-    double operator()(int /*rotor*/, double /*x_m*/, double /*y_m*/, double /*z_m*/) const { return factor; }
+    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& /*hub_m*/) const {
+        return factor;
+    }
 };
 
 /// Yaw about z, pitch about y, roll about x: the product of three quaternions of half the angles.

@@ -52,7 +52,7 @@ TEST_CASE("All laws together bring the vehicle to a place below a ceiling, at 10
     const SpaceAllocation allocation = make_space_allocation(model);
     const LyapunovLaw law;
     const auto k_c = [](double z_m) { return 1 + 0.01 / ((2 - z_m) * (2 - z_m)); };
-    const auto surface = [&](int /*rotor*/, double /*x_m*/, double /*y_m*/, double z_m) { return k_c(z_m); };
+    const RatiosInSpace surface([&](int /*rotor*/, double /*x_m*/, double /*y_m*/, double z_m) { return k_c(z_m); });
     // 0.4 m below it: nearer, the rotor that a tilt brings up draws itself up further (thesis 4.6, assumption 3.1).
     const LyapunovReference<double> reference{{1, 0, 0}, {-1, 0, 0}, {1.6, 0, 0}, {0.5, 0, 0}};
     const auto end = [&](bool knows_ceiling) {

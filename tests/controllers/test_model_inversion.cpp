@@ -5,7 +5,7 @@
 #include "../support/random.hpp"
 #include "../support/test_robot.hpp"
 #include "downwash/controllers/configuration.hpp"
-#include "downwash/controllers/model_inversion.hpp"
+#include "downwash/controllers/model_inversion_control.hpp"
 
 using namespace downwash;
 using namespace downwash::test;

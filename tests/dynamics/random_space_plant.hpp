@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "../support/random.hpp"
+#include "../support/surroundings.hpp"
 #include "downwash/dynamics/space_plant.hpp"
 #include "downwash/dynamics/space_step.hpp"
 
@@ -69,11 +70,6 @@ dynamics::SpaceState<double, n> random_space_state(Random& random, double rate_r
     }
     return state;
 }
-
-/// No surface is near.
-struct FreeSpace {
-    double operator()(int /*rotor*/, double /*x_m*/, double /*y_m*/, double /*z_m*/) const { return 1; }
-};
 
 /// Several steps.
 template <int n, class Surroundings = FreeSpace>

@@ -4,7 +4,7 @@
 
 #include "../support/mujoco_world.hpp"
 #include "../support/test_robot.hpp"
-#include "downwash/controllers/model_inversion.hpp"
+#include "downwash/controllers/model_inversion_control.hpp"
 
 // The same flights in a general-purpose rigid-body simulator, which knows nothing of our equations.
 

@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "downwash/dynamics/ceiling_contact.hpp"
+#include "downwash/dynamics/ceiling_tick.hpp"
 #include "downwash/dynamics/quadrotor.hpp"
 #include "downwash/dynamics/space_energy.hpp"
 #include "random_space_plant.hpp"
@@ -75,9 +75,9 @@ Command lift(double newton) {
 }
 
 /// Suction: thesis (2.18)'s kind of rise towards the ceiling.
-struct Suction {
-    double operator()(int /*rotor*/, double /*x_m*/, double /*y_m*/, double z_m) const {
-        const double distance_m = ceiling_m - z_m;
+struct Suction : FreeSpace {
+    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& hub_m) const {
+        const double distance_m = ceiling_m - hub_m.z;
         return 1 + 0.0008 / (distance_m * distance_m);
     }
 };
@@ -89,12 +89,12 @@ struct Flight {
     int steps = 0;
 };
 
-template <class Factor>
+template <class Around>
 Flight flown_under(const SpaceModel<0>& model, const CeilingContact& contact, const State& start,
-                   const Command& command, int ticks, const Factor& factor, const dynamics::ContactSteps& steps = {}) {
+                   const Command& command, int ticks, const Around& around, const dynamics::ContactSteps& steps = {}) {
     Flight flight{start};
     for (int i = 0; i < ticks; ++i) {
-        const auto tick = dynamics::contact_tick(model, contact, flight.state, command, 0.01, factor, steps);
+        const auto tick = dynamics::contact_tick(model, contact, flight.state, command, 0.01, around, steps);
         flight.state = tick.state;
         flight.impulse_n_s += tick.normal_impulse_n_s;
         flight.max_depth_m = std::max(flight.max_depth_m, tick.max_depth_m);

@@ -232,7 +232,7 @@ TEST_CASE("Rotor energy is the power of the commanded thrust, whatever a surface
     CHECK(dynamics::rotor_power(model, command.thrust_n) == Approx(power_w));
     State state = state_of({0, 9, 0, quarter_turn});
     for (int i = 0; i < 100; ++i) {
-        state = dynamics::flight_step(model, state, command, 0.01, [](int, double, double) { return 1.3; });
+        state = dynamics::flight_step(model, state, command, 0.01, Ratios([](int, double, double) { return 1.3; }));
     }
     CHECK(state.energy_j == Approx(power_w * 1.0));
 }
@@ -268,14 +268,14 @@ TEST_CASE("A surface factor multiplies each rotor's thrust at its own place") {
     const double pitch = 0.3;
     const auto a = dynamics::attitude(model, pitch, 0.0);
     std::vector<int> asked;
-    const auto factor = [&](int rotor, double x_m, double z_m) {
+    const Ratios around([&](int rotor, double x_m, double z_m) {
         asked.push_back(rotor);
         const double bx = model.rotor_x_m[rotor];
         CHECK(x_m == Approx(5 + std::cos(pitch) * bx + std::sin(pitch) * 0.06));
         CHECK(z_m == Approx(2 - std::sin(pitch) * bx + std::cos(pitch) * 0.06));
         return bx > 0 ? 1.5 : 1.0;
-    };
-    const auto wrench = dynamics::rotor_wrench(model, a, 5.0, 2.0, thrust_n, factor);
+    });
+    const auto wrench = dynamics::rotor_wrench(model, a, 5.0, 2.0, thrust_n, around);
     CHECK(asked == std::vector<int>{0, 1, 2, 3});
     CHECK(wrench.thrust_n == Approx(1.5 * 21 + 25));
     CHECK(wrench.pitch_torque_nm == Approx(-0.32 * (1.5 * 21 - 25)));
@@ -291,16 +291,21 @@ TEST_CASE("A fountain pushes the body along its axis at the centre between the r
     const double thrust_n[max_rotors] = {10, 11, 12, 13};
     const double pitch = -0.2;
     const auto a = dynamics::attitude(model, pitch, 0.0);
-    const auto factor = [&](int rotor, double x_m, double z_m) {
-        if (rotor < 4) {
+    struct Fountain : FreeAir {
+        double pitch;
+        explicit Fountain(double at_pitch) : pitch(at_pitch) {}
+        double thrust_ratio(int /*rotor*/, const dynamics::PlanePoint<double>& /*hub_m*/, double /*sin_pitch*/) const {
             return 1.1;
         }
-        CHECK(x_m == Approx(5 + std::cos(pitch) * 0.05 + std::sin(pitch) * 0.06));
-        CHECK(z_m == Approx(2 - std::sin(pitch) * 0.05 + std::cos(pitch) * 0.06));
-        return 1.25;
+        double body_ratio(const dynamics::PlanePoint<double>& center_m, double /*sin_pitch*/) const {
+            CHECK(center_m.x == Approx(5 + std::cos(pitch) * 0.05 + std::sin(pitch) * 0.06));
+            CHECK(center_m.z == Approx(2 - std::sin(pitch) * 0.05 + std::cos(pitch) * 0.06));
+            return 1.25;
+        }
     };
-    const auto without = dynamics::rotor_wrench(calm, a, 5.0, 2.0, thrust_n, factor);
-    const auto with = dynamics::rotor_wrench(model, a, 5.0, 2.0, thrust_n, factor);
+    const Fountain around(pitch);
+    const auto without = dynamics::rotor_wrench(calm, a, 5.0, 2.0, thrust_n, around);
+    const auto with = dynamics::rotor_wrench(model, a, 5.0, 2.0, thrust_n, around);
     CHECK(with.thrust_n - without.thrust_n == Approx(0.25 * 46));
     CHECK(with.pitch_torque_nm - without.pitch_torque_nm == Approx(-0.05 * 0.25 * 46));
 }
@@ -315,7 +320,7 @@ TEST_CASE("The surface factor is read at every stage of a step, not held") {
     double worst = 0;
     for (int tick = 1; tick <= 500; ++tick) {
         state = dynamics::flight_step(model, state, command, 0.01,
-                                      [](int, double, double z_m) { return 1 - 0.5 * (z_m - 2.06); });
+                                      Ratios([](int, double, double z_m) { return 1 - 0.5 * (z_m - 2.06); }));
         worst = std::max(worst, std::abs(state.q[1] - (2 + 0.1 * std::cos(omega * 0.01 * tick))));
     }
     CHECK(worst < 1e-7);
@@ -328,11 +333,11 @@ TEST_CASE("The step converges with the fourth order") {
     const PlantModel model = plant_of(robot);
     Command command = even_command(model, 55, 1.5);
     command.thrust_n[0] += 0.5;
-    const auto factor = [](int, double x_m, double z_m) { return 1 + 0.3 * std::exp(-z_m * z_m - x_m); };
+    const Ratios around([](int, double x_m, double z_m) { return 1 + 0.3 * std::exp(-z_m * z_m - x_m); });
     const auto end = [&](int steps) {
         State state = state_of({0.2, 0.5, 0.1, 0.4}, {0.3, 0.1, -0.5, 1});
         for (int i = 0; i < steps; ++i) {
-            state = dynamics::flight_step(model, state, command, 0.8 / steps, factor);
+            state = dynamics::flight_step(model, state, command, 0.8 / steps, around);
         }
         return state;
     };

@@ -40,14 +40,14 @@ TEST_CASE("On the bench a plate under one rotor turns the vehicle by the thrust 
     const PitchBench bench{{0, 0, 0}, {3, 4, 2}, 0};
     const double thrust_n[max_rotors] = {4, 4, 4, 4};
     // Rotor 2 of the plus layout is the front one: it gets 1.1 times its thrust.
-    const auto plate = [](int rotor, double x_m, double y_m, double z_m) {
+    const RatiosInSpace plate([](int rotor, double x_m, double y_m, double z_m) {
         if (rotor == 1) {
             CHECK(x_m == Approx(3 + 0.25 * std::cos(0.2)));
             CHECK(y_m == Approx(4));
             CHECK(z_m == Approx(2 - 0.25 * std::sin(0.2)));
         }
         return rotor == 1 ? 1.1 : 1.0;
-    };
+    });
     CHECK(dynamics::pitch_acceleration(model, bench, 0.2, 0.0, thrust_n, plate) == Approx(-0.25 * 0.4 / 0.02));
     const PitchBench rusty{{0, 0, 0}, {3, 4, 2}, 0.01};
     CHECK(dynamics::pitch_acceleration(model, rusty, 0.2, 5.0, thrust_n, plate) ==

@@ -2,7 +2,8 @@
 #include <cmath>
 
 #include "../support/random.hpp"
-#include "downwash/dynamics/planar_contact.hpp"
+#include "../support/surroundings.hpp"
+#include "downwash/dynamics/contact_step.hpp"
 #include "random_plant.hpp"
 
 using namespace downwash;
@@ -14,10 +15,6 @@ using dynamics::PlanarContact;
 using dynamics::PlanePoint;
 
 namespace {
-
-struct FreeAir {
-    double operator()(int /*rotor*/, double /*x_m*/, double /*z_m*/) const { return 1; }
-};
 
 PlanarContact frame_under(double ceiling_m) {
     PlanarContact contact;

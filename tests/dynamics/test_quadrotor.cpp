@@ -29,9 +29,9 @@ double ceiling_ratio(double distance_m) {
     return 1 + 0.02 / (distance_m * distance_m);
 }
 constexpr double ceiling_m = 1.0;
-struct Ceiling {
-    double operator()(int /*rotor*/, double /*x_m*/, double /*y_m*/, double z_m) const {
-        return ceiling_ratio(ceiling_m - z_m);
+struct Ceiling : FreeSpace {
+    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& hub_m) const {
+        return ceiling_ratio(ceiling_m - hub_m.z);
     }
 };
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "../support/test_robot.hpp"
+#include "downwash/dynamics/flight_step.hpp"
 #include "random_space_plant.hpp"
 
 // With one joint across the plane of motion the plant in space is the planar one.
@@ -12,14 +13,13 @@ using namespace downwash::test;
 namespace {
 
 /// K that differs from rotor to rotor and from place to place.
-struct Bumps {
-    double operator()(int rotor, double x_m, double z_m) const {
-        return 1 + (0.1 + 0.03 * rotor) * std::exp(-z_m * z_m - 0.3 * x_m * rotor);
-    }
-};
-struct BumpsInSpace {
-    double operator()(int rotor, double x_m, double /*y_m*/, double z_m) const { return Bumps{}(rotor, x_m, z_m); }
-};
+double bump(int rotor, double x_m, double z_m) {
+    return 1 + (0.1 + 0.03 * rotor) * std::exp(-z_m * z_m - 0.3 * x_m * rotor);
+}
+const Ratios bumps(bump);
+const RatiosInSpace bumps_in_space([](int rotor, double x_m, double /*y_m*/, double z_m) {
+    return bump(rotor, x_m, z_m);
+});
 
 Robot planar_robot(double lag_s) {
     Robot robot = test_robot();
@@ -96,8 +96,8 @@ double difference_after_a_second(double lag_s, double dt_s) {
         std::copy(thrust_n, thrust_n + 4, command.thrust_n);
         std::copy(thrust_n, thrust_n + 4, same.thrust_n);
         command.joint_torque_nm = same.joint_torque_nm[0] = -2 * std::cos(4 * t);
-        planar = dynamics::flight_step(plane, planar, command, dt_s, Bumps{});
-        lifted_state = dynamics::space_step(space, lifted_state, same, dt_s, BumpsInSpace{});
+        planar = dynamics::flight_step(plane, planar, command, dt_s, bumps);
+        lifted_state = dynamics::space_step(space, lifted_state, same, dt_s, bumps_in_space);
         worst = std::max(worst, difference(planar, lifted_state));
     }
     CHECK(std::abs(planar.q[2] - 0.1) > 0.3);  // it does something
@@ -123,9 +123,9 @@ TEST_CASE("In a plane the accelerations of the plant in space are the planar one
         const double torque_nm = random.uniform(-5, 5);
         double du[4];
         dynamics::accelerations(plane, planar.q, planar.u, dynamics::motion_at(plane, planar.q, planar.u),
-                                planar.thrust_n, torque_nm, Bumps{}, du);
+                                planar.thrust_n, torque_nm, bumps, du);
         double du_space[7];
-        dynamics::accelerations(space, state.q, state.u, state.thrust_n, {0, 0, 0}, &torque_nm, BumpsInSpace{},
+        dynamics::accelerations(space, state.q, state.u, state.thrust_n, {0, 0, 0}, &torque_nm, bumps_in_space,
                                 du_space);
         const double expected[] = {du[0], 0, du[1], 0, du[2], 0, du[3]};
         for (int i = 0; i < 7; ++i) {

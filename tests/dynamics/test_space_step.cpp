@@ -46,13 +46,13 @@ TEST_CASE("The wrench of a tilted rotor by hand: push, lever, drag torque agains
     const auto model = make_space_model<0>(one_rotor());
     const double thrust_n[max_rotors] = {10};
     const auto wrench = dynamics::rotor_wrench(model, dynamics::rotation_of(level), {5, 6, 7}, thrust_n,
-                                               [](int rotor, double x_m, double y_m, double z_m) {
+                                               RatiosInSpace([](int rotor, double x_m, double y_m, double z_m) {
                                                    CHECK(rotor == 0);
                                                    CHECK(x_m == Approx(5.1));
                                                    CHECK(y_m == Approx(6.2));
                                                    CHECK(z_m == Approx(7.3));
                                                    return 1.5;
-                                               });
+                                               }));
     // The axis is (0, 0.6, 0.8): 15 N act along it.
     CHECK(wrench.force_n.x == 0);
     CHECK(wrench.force_n.y == Approx(9));
@@ -69,12 +69,12 @@ TEST_CASE("Each hub is where the attitude takes it") {
     // A quarter turn about z takes (0.1, 0.2, 0.3) to (-0.2, 0.1, 0.3).
     const double quarter[4] = {std::sqrt(0.5), 0, 0, std::sqrt(0.5)};
     dynamics::rotor_wrench(model, dynamics::rotation_of(quarter), {0, 0, 0}, thrust_n,
-                           [](int /*rotor*/, double x_m, double y_m, double z_m) {
+                           RatiosInSpace([](int /*rotor*/, double x_m, double y_m, double z_m) {
                                CHECK(x_m == Approx(-0.2));
                                CHECK(y_m == Approx(0.1));
                                CHECK(z_m == Approx(0.3));
                                return 1.0;
-                           });
+                           }));
 }
 
 TEST_CASE("A spinning rotor makes a turning body precess") {
@@ -184,10 +184,10 @@ TEST_CASE("The step in space converges with the fourth order") {
     }
     command.joint_torque_nm[0] = 0.2;
     command.joint_torque_nm[1] = -0.1;
-    const auto factor = [](int rotor, double x_m, double y_m, double z_m) {
+    const RatiosInSpace around([](int rotor, double x_m, double y_m, double z_m) {
         return 1 + (0.2 + 0.02 * rotor) * std::exp(-0.2 * z_m * z_m - 0.1 * x_m + 0.1 * y_m);
-    };
-    const auto end = [&](int steps) { return flown(model, start, command, 0.5 / steps, steps, factor); };
+    });
+    const auto end = [&](int steps) { return flown(model, start, command, 0.5 / steps, steps, around); };
     const auto exact = end(5120);
     const auto error = [&](int steps) {
         const auto state = end(steps);
@@ -233,14 +233,14 @@ TEST_CASE("Lanes of a pack fly the same bits as plain doubles") {
             set_number_at(pack, i, all);
         }
     }
-    const auto factor = [](int rotor, auto x_m, auto y_m, auto z_m) {
+    const RatiosInSpace around([](int rotor, auto x_m, auto y_m, auto z_m) {
         using T = decltype(x_m);
         return T(1.1) + T(0.01 * rotor) * x_m / (T(1) + y_m * y_m + z_m * z_m);
-    };
+    });
     for (int tick = 0; tick < 50; ++tick) {
-        pack = dynamics::space_step(model, pack, pack_command, Pack(0.01), factor);
+        pack = dynamics::space_step(model, pack, pack_command, Pack(0.01), around);
         for (int lane = 0; lane < width; ++lane) {
-            states[lane] = dynamics::space_step(model, states[lane], commands[lane], 0.01, factor);
+            states[lane] = dynamics::space_step(model, states[lane], commands[lane], 0.01, around);
         }
     }
     int differing = 0;

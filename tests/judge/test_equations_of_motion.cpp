@@ -30,9 +30,9 @@ Robot robot_with_drag() {
 }
 
 /// K = 1 and wind.
-struct Air {
+struct Air : FreeAir {
+    explicit Air(const dynamics::PlanePoint<double>& moving) : air(moving) {}
     dynamics::PlanePoint<double> air;
-    double operator()(int /*rotor*/, double /*x_m*/, double /*z_m*/) const { return 1; }
     [[nodiscard]] dynamics::PlanePoint<double> wind() const { return air; }
 };
 
@@ -68,7 +68,7 @@ TEST_CASE("Two bodies and a joint accelerate like the generalised coordinates") 
         }
         double du[4];
         dynamics::accelerations(model, q, u, dynamics::motion_at(model, q, u), thrust_n.data(), torque_nm,
-                                Air{{wind.x, wind.z}}, du);
+                                Air({wind.x, wind.z}), du);
         const judge::Acceleration a = plant.acceleration(m, thrust_n, torque_nm, wind);
         CHECK(std::abs(a.position_m_s2.x - du[0]) < 1e-9);
         CHECK(std::abs(a.position_m_s2.z - du[1]) < 1e-9);

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "../support/single_tick.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/search/flight_point.hpp"
@@ -159,7 +160,7 @@ TEST_CASE("a flight in which the vehicle turns faster than it may counts as unst
     double fastest_rad_s = 0;
     for (std::int64_t tick = 0; tick < segment.ticks(); ++tick) {
         controllers::Actuation<double> given{};
-        state = simulation::tick(f.model->tick(), state, segment.at_tick(tick), test::FreeAir{}, given);
+        state = test::single_tick(f.model->tick(), state, segment.at_tick(tick), given);
         fastest_rad_s = std::max(fastest_rad_s, std::abs(state.plant.u[2]));
     }
     CHECK(rejection_with(std::nullopt) == Rejection::none);

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../support/single_tick.hpp"
 #include "hover_scenes.hpp"
 
 // The cascaded PID in closed loop.
@@ -23,7 +24,7 @@ Robot robot_with(const CascadedPid& law) {
 FlightState flown(const FlightModel& model, FlightState state, const ReferencePoint& reference, int ticks) {
     for (int i = 0; i < ticks; ++i) {
         controllers::Actuation<double> given{};
-        state = simulation::tick(model.tick(), state, reference, FreeAir{}, given);
+        state = single_tick(model.tick(), state, reference, given);
     }
     return state;
 }
@@ -76,7 +77,7 @@ TEST_CASE("the commands of a cascaded PID are its gains times its errors and not
     CascadedPid::Memory<double> memory{{0.2, -0.1}, 0.05, -0.02, {0, 0}, 0.4};
     state.memory = controllers::remembered(memory);
     controllers::Actuation<double> given{};
-    simulation::tick(model.tick(), state, at_rest({0.5, 2.2, 0.6}), FreeAir{}, given);
+    static_cast<void>(single_tick(model.tick(), state, at_rest({0.5, 2.2, 0.6}), given));
 
     const double ax = 1.1 * (0.75 * 0.5 - 0.3) + 0.45 * 0.2;
     const double az = 7.5 * (2.0 * 0.2 + 0.2) + 2.7 * -0.1;
@@ -119,7 +120,7 @@ TEST_CASE("the integrals of a cascaded PID stand still while a rotor is at its l
     const FlightModel model = in_free_air(robot_with({}));
     const FlightState start = model.state_at({0, 2, 0, quarter_turn});
     controllers::Actuation<double> given{};
-    const FlightState next = simulation::tick(model.tick(), start, at_rest({0, 12, quarter_turn}), FreeAir{}, given);
+    const FlightState next = single_tick(model.tick(), start, at_rest({0, 12, quarter_turn}), given);
     REQUIRE(given.saturation > 1);
     const auto before = controllers::recalled<CascadedPid>(start.memory);
     const auto after = controllers::recalled<CascadedPid>(next.memory);

@@ -5,9 +5,10 @@
 #include <cstring>
 #include <vector>
 
+#include "../support/single_tick.hpp"
 #include "../support/test_robot.hpp"
 #include "downwash/controllers/configuration.hpp"
-#include "downwash/simulation/closed_loop.hpp"
+#include "downwash/controllers/control.hpp"
 
 // The closed loop far from every surface.
 
@@ -50,7 +51,7 @@ Robot robot_with_memory(double lag_s) {
 State flown(const simulation::TickModel& model, State state, const ReferencePoint& reference, int ticks) {
     for (int i = 0; i < ticks; ++i) {
         Given given{};
-        state = simulation::tick(model, state, reference, FreeAir{}, given);
+        state = single_tick(model, state, reference, given);
     }
     return state;
 }
@@ -266,19 +267,19 @@ TEST_CASE("A demand beyond the limits is clipped, reported, and freezes the inte
     const State state = resting_at(0, 2, 0);
     Given given{};
 
-    const State calm = simulation::tick(model, state, at_rest({0, 2.05, 0}), FreeAir{}, given);
+    const State calm = single_tick(model, state, at_rest({0, 2.05, 0}), given);
     CHECK(given.saturation < 1);
     CHECK(memory_of(calm).position_integral[1] == Approx(0.05 * 0.01));
 
     for (const double z_m : {50.0, -50.0}) {
-        const State asked = simulation::tick(model, state, at_rest({0, z_m, 0}), FreeAir{}, given);
+        const State asked = single_tick(model, state, at_rest({0, z_m, 0}), given);
         CHECK(given.saturation > 1);
         const auto [least, most] = std::minmax_element(given.command.thrust_n, given.command.thrust_n + 4);
         CHECK((z_m > 0 ? *most == 28 : *least == 0));
         CHECK(memory_of(asked).position_integral[1] == 0);
     }
 
-    const State swung = simulation::tick(model, state, at_rest({0, 2, 3}), FreeAir{}, given);
+    const State swung = single_tick(model, state, at_rest({0, 2, 3}), given);
     CHECK(given.saturation > 1);
     CHECK(given.command.joint_torque_nm == 12);
     CHECK(memory_of(swung).arm_integral == 0);
@@ -325,7 +326,7 @@ TEST_CASE("The joint torque balances the thrust that lagging rotors give in the 
     state.plant.thrust_n[0] *= 0.5;  // far from what will be commanded
     state.plant.thrust_n[3] *= 0.7;
     Given given{};
-    static_cast<void>(simulation::tick(model, state, at_rest({0, 2, arm_rad}), FreeAir{}, given));
+    static_cast<void>(single_tick(model, state, at_rest({0, 2, arm_rad}), given));
     double thrust_n = 0;
     double pitch_torque_nm = 0;
     for (int i = 0; i < 4; ++i) {

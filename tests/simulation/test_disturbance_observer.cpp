@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "downwash/controllers/control.hpp"
 #include "hover_scenes.hpp"
 
 // Laws that observe what pushes the vehicle, on a plant that is pushed by forces of the test's own.
@@ -34,11 +35,9 @@ class Pushed {
     /// One tick, as ten steps of Runge and Kutta's method.
     void fly(const ReferencePoint& reference, const Four& push) {
         const auto motion = dynamics::motion_at(plant_, state.q, state.u);
-        const FreeAir air;
-        const auto map = [&](int rotor, double x, double z, double) { return air(rotor, x, z); };
         fly_aided([&]<class Flown>(const Flown& own) {
             memory_ = controllers::remembered(own.control(plant_, state, motion, controllers::recalled<Flown>(memory_),
-                                                          reference, tick_s, given, map));
+                                                          reference, tick_s, given, FreeAir{}));
         });
         for (int i = 0; i < 10; ++i) {
             step(push, tick_s / 10);
@@ -68,7 +67,7 @@ class Pushed {
     void fly_aided(const Use& use) const {
         std::visit(
             [&]<class Law>(const Law& own) {
-                if constexpr (controllers::can_be_aided<Law>) {
+                if constexpr (controllers::CanBeAided<Law>) {
                     use(controllers::Aided<Law>{own});
                 }
             },

@@ -1,7 +1,9 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "downwash/simulation/flight_loop.hpp"
+#include "../support/single_tick.hpp"
+#include "downwash/controllers/control.hpp"
+#include "downwash/simulation/surroundings.hpp"
 #include "hover_scenes.hpp"
 
 // Laws that read surface effects from a map.
@@ -36,8 +38,7 @@ double settled_error_m(const Problem& problem, double gap_m, const FlownWorld* w
     FlightState state = model->state_at({0, z_m, 0, quarter_turn});
     for (int i = 0; i < 4000; ++i) {
         controllers::Actuation<double> given{};
-        state = simulation::quiet_tick(*model, state, at_rest({0, z_m, quarter_turn}), simulation::DirectFactor{*model},
-                                       given, dynamics::OneStep{}, world);
+        state = single_quiet_tick(*model, state, at_rest({0, z_m, quarter_turn}), given, world);
     }
     CHECK(std::abs(state.plant.u[1]) < 1e-6);
     return state.plant.q[1] - z_m;
@@ -76,19 +77,18 @@ TEST_CASE("the rotors act as demanded at any pose and tilt if the map is right, 
                                   random.uniform(-1, 1)};
             const FlightState state = model->state_at(pose);
             const auto motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
-            simulation::DirectFactor factor{*model};
-            const simulation::ReadEffect<double, simulation::DirectFactor> map(factor, model->tick().tilt_loss);
-            const simulation::TiltedEffect<double, simulation::DirectFactor> acting(factor, model->tick().tilt_loss);
+            simulation::DirectField field(*model);
+            const simulation::NominalSurroundings<double, simulation::DirectField> around(field,
+                                                                                          model->tick().tilt_loss);
             controllers::Actuation<double> given{};
             const double thrust_n = random.uniform(40, 60);
             const double torque_nm = random.uniform(-2, 2);
             const double observed[4] = {};
-            controllers::Aid<double, decltype(map)> aid(gains_of(problem.robot).aids, plant, state.plant, motion,
-                                                        observed, 0.01, map);
+            controllers::Aid aid(gains_of(problem.robot).aids, plant, state.plant, motion, observed, 0.01, around);
             const auto believed = aid.command_rotors(plant, state.plant, thrust_n, torque_nm, 0.01, 0, given);
             REQUIRE(given.saturation < 1);
             const auto wrench =
-                dynamics::rotor_wrench(plant, motion.attitude, pose.x_m, pose.z_m, given.command.thrust_n, acting);
+                dynamics::rotor_wrench(plant, motion.attitude, pose.x_m, pose.z_m, given.command.thrust_n, around);
             CHECK(wrench.thrust_n == Approx(thrust_n).epsilon(1e-12));
             CHECK(wrench.pitch_torque_nm == Approx(torque_nm).margin(1e-11));
             CHECK(believed.thrust_n == Approx(thrust_n).epsilon(1e-12));

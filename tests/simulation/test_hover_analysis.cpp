@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "downwash/simulation/flight_loop.hpp"
+#include "../support/single_tick.hpp"
 #include "hover_scenes.hpp"
 
 using namespace downwash;
@@ -89,7 +89,7 @@ double distance(const FlightState& a, const FlightState& b) {
 
 FlightState flown(const FlightModel& model, const HoverTrim& trim, const FlightState& from) {
     controllers::Actuation<double> given{};
-    return simulation::quiet_tick(model, from, trim.reference, simulation::DirectFactor{model}, given);
+    return single_quiet_tick(model, from, trim.reference, given);
 }
 
 /// Whether a disturbance of a millimetre leaves five centimetres, or is still growing in the end.
@@ -204,8 +204,8 @@ TEST_CASE("the trim is a fixed point of the tick, whatever the controller rememb
             }
             ++found;
             controllers::Actuation<double> given{};
-            const FlightState next = simulation::tick(model->tick(), a.trim.state, a.trim.reference,
-                                                      simulation::DirectFactor{*model}, given);
+            const FlightState next =
+                single_tick(model->tick(), a.trim.state, a.trim.reference, given, simulation::DirectField(*model));
             CHECK(distance(next, a.trim.state) < 1e-12);
             for (int j = 0; j < 4; ++j) {
                 CHECK(std::abs(next.plant.u[j]) < 1e-12);

@@ -2,8 +2,9 @@
 #include <cmath>
 #include <random>
 
+#include "../support/single_tick.hpp"
 #include "downwash/controllers/lyapunov_coordinate.hpp"
-#include "downwash/dynamics/flight_step.hpp"
+#include "downwash/simulation/closed_loop.hpp"
 #include "hover_scenes.hpp"
 
 // The Lyapunov laws in the plane of motion, with the arm.
@@ -57,7 +58,7 @@ TEST_CASE(
             reference.acceleration[axis] = any(random);
         }
         controllers::Actuation<double> given{};
-        const FlightState next = simulation::tick(model.tick(), state, reference, FreeAir{}, given);
+        const FlightState next = single_tick(model.tick(), state, reference, given);
         REQUIRE(given.saturation < 1);
         const PlantModel& plant = model.tick().plant;
         double du[4];
@@ -85,7 +86,7 @@ TEST_CASE("V of a height falls as promised under a level planar Lyapunov law, an
     reference.velocity[1] = -0.1;
     reference.acceleration[1] = 0.2;
     controllers::Actuation<double> given{};
-    const FlightState next = simulation::tick(model.tick(), state, reference, FreeAir{}, given);
+    const FlightState next = single_tick(model.tick(), state, reference, given);
     const double az = (next.plant.u[1] - 0.3) / 0.01;
     CHECK(std::abs(excess_of_fall(2, 5, {2.1, 0.3, az}, {2, -0.1, 0.2})) < 1e-6);
 
@@ -102,7 +103,7 @@ TEST_CASE("a planar Lyapunov law arrives and holds, and with an observer also be
     const auto flown = [](const FlightModel& by, const PlantModel& plant) {
         const simulation::TickModel& tick = by.tick();
         FlightState state = by.state_at({0, 2, 0, 0.3});
-        const FreeAir calm;
+        simulation::NoEffect calm;
         controllers::visit_flown(tick.law, [&](const auto& law) {
             for (int i = 0; i < 3000; ++i) {
                 controllers::Actuation<double> given{};
@@ -111,7 +112,7 @@ TEST_CASE("a planar Lyapunov law arrives and holds, and with an observer also be
                 simulation::control(tick, law, state.plant, believed, state.memory, at_rest({0.3, 2.4, 1.1}), calm,
                                     given, memory);
                 state.memory = memory;
-                state.plant = dynamics::flight_step(plant, state.plant, given.command, tick.tick_s, calm);
+                state.plant = dynamics::flight_step(plant, state.plant, given.command, tick.tick_s, FreeAir{});
             }
         });
         return state;

@@ -8,6 +8,7 @@
 
 #include "../support/mujoco_world.hpp"
 #include "../support/test_robot.hpp"
+#include "downwash/controllers/control.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -160,7 +161,6 @@ Difference difference_from_mujoco(const FlightModel& model, const FlightState& s
     std::copy(start.plant.thrust_n, start.plant.thrust_n + mujoco.model()->na, data->act);
 
     controllers::LawMemory<double> memory = start.memory;
-    const auto free_air = [](int, double, double, double) { return 1.0; };  // no law here has a feed-forward
     LateState late(model.robot().controller.delay_s / tick.tick_s);
     Difference worst;
     for (const FlightRow& row : execution.rows) {
@@ -180,7 +180,7 @@ Difference difference_from_mujoco(const FlightModel& model, const FlightState& s
             const auto own = controllers::recalled<Flown>(memory);
             if constexpr (controllers::is_aided<Flown>) {
                 memory = controllers::remembered(
-                    law.control(tick.plant, seen, motion, own, row.reference, tick.tick_s, given, free_air));
+                    law.control(tick.plant, seen, motion, own, row.reference, tick.tick_s, given, FreeAir{}));
             } else {
                 memory = controllers::remembered(
                     law.control(tick.plant, seen, motion, own, row.reference, tick.tick_s, given));

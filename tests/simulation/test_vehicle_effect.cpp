@@ -3,8 +3,10 @@
 
 #include "../support/random.hpp"
 #include "../support/test_problem.hpp"
+#include "downwash/dynamics/flight_step.hpp"
 #include "downwash/planner/solve.hpp"
-#include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/direct_field.hpp"
+#include "downwash/simulation/surroundings.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
 // The vehicle of the tests: four rotors of R = 0.1905 m at x = +-0.32 m, 0.06 m over its centre of mass; 4.95 kg.
@@ -205,11 +207,12 @@ TEST_CASE("A wall pushes a hovering vehicle away and pulls the side towards it d
     const auto motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
     double with[4];
     double without[4];
-    const simulation::DirectFactor factor{*model};
-    dynamics::accelerations(plant, state.plant.q, state.plant.u, motion, command_n, 0.0, factor, with);
+    simulation::DirectField field(*model);
+    const simulation::NominalSurroundings<double, simulation::DirectField> around(field, no_tilt_loss);
+    dynamics::accelerations(plant, state.plant.q, state.plant.u, motion, command_n, 0.0, around, with);
     PlantModel free = plant;
     free.has_walls = false;
-    dynamics::accelerations(free, state.plant.q, state.plant.u, motion, command_n, 0.0, factor, without);
+    dynamics::accelerations(free, state.plant.q, state.plant.u, motion, command_n, 0.0, around, without);
     // The generalised forces that make the difference: the push along x, the moment on the pitch alone.
     double more[4];
     double less[4];

@@ -5,7 +5,10 @@
 #include <numbers>
 
 #include "../support/same_bytes.hpp"
+#include "downwash/simulation/direct_field.hpp"
 #include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/noise.hpp"
+#include "downwash/simulation/surroundings.hpp"
 #include "hover_scenes.hpp"
 
 // Flights where plant, surfaces, sensors and air are not what the controller believes.
@@ -90,12 +93,14 @@ struct Hover {
     template <class After>
     void fly(int ticks, const After& after) {
         const ReferenceSegment segment(reference, reference, ticks, model->tick().tick_s);
-        simulation::fly_ticks(model->tick(), world, 0, segment, simulation::NoEffect{}, dynamics::OneStep{}, state,
-                              [&](const FlightState&, const ReferencePoint&, const controllers::Actuation<double>&,
-                                  const FlightState& next, const ReferencePoint&) {
-                                  after(next);
-                                  return Rejection::none;
-                              });
+        simulation::FlightEffectOf calm{simulation::NoEffect{}};
+        const simulation::FlightLoop loop(model->tick(), &world, calm);
+        loop.fly(0, segment, state,
+                 [&](const FlightState&, const ReferencePoint&, const controllers::Actuation<double>&,
+                     const FlightState& next, const ReferencePoint&) {
+                     after(next);
+                     return Rejection::none;
+                 });
     }
     void fly(int ticks) {
         fly(ticks, [](const FlightState&) {});
@@ -306,9 +311,9 @@ TEST_CASE("Surfaces of a world act where they really are, each side by its own s
     world.scene_x_m = 0.03;
     world.scene_z_m = -0.04;
     const FlownWorld flown = make_world(problem.robot, world);
-    simulation::DirectFactor effect{*model};
-    const simulation::WorldSurroundings<double, simulation::DirectFactor> surroundings(flown.numbers, {}, effect,
-                                                                                       model->tick().tilt_loss);
+    simulation::DirectField field(*model);
+    const simulation::WorldSurroundings<double, simulation::DirectField> around(flown.numbers, {}, field,
+                                                                                model->tick().tilt_loss);
     Random random(8);
     double greatest = 0;
     for (int n = 0; n < 200; ++n) {
@@ -320,7 +325,7 @@ TEST_CASE("Surfaces of a world act where they really are, each side by its own s
             continue;  // at its cap
         }
         const double expected = 1 + 0.9 * (sides.ground - 1) + 1.2 * (sides.ceiling - 1);
-        CHECK(surroundings(0, x_m, z_m, 0.0) == Approx(expected).epsilon(1e-12));
+        CHECK(around.thrust_ratio(0, {x_m, z_m}, 0.0) == Approx(expected).epsilon(1e-12));
         greatest = std::max(greatest, std::abs(expected - sides.total));
     }
     CHECK(greatest > 0.01);
@@ -338,15 +343,14 @@ TEST_CASE("A fountain pushes from the ground alone, whatever is above") {
     world.ceiling_scale = 0.5;
     world.ground_scale = -0.1;
     const FlownWorld flown = make_world(problem.robot, world);
-    simulation::DirectFactor effect{*model};
-    const int body = model->tick().plant.body();
-    const simulation::WorldSurroundings<double, simulation::DirectFactor> surroundings(flown.numbers, {}, effect,
-                                                                                       model->tick().tilt_loss);
+    simulation::DirectField field(*model);
+    const simulation::WorldSurroundings<double, simulation::DirectField> around(flown.numbers, {}, field,
+                                                                                model->tick().tilt_loss);
     for (const double z_m : {0.4, 1.0, 4.6}) {  // the last one close below the ceiling
-        const double push = model->direct_factor(body, 0, z_m) - 1;
-        CHECK(surroundings(body, 0, z_m, 0.0) == Approx(1 + 0.9 * push).epsilon(1e-12));
+        const double push = field.at_body(0, z_m).all - 1;
+        CHECK(around.body_ratio({0, z_m}, 0.0) == Approx(1 + 0.9 * push).epsilon(1e-12));
     }
-    CHECK(model->direct_factor(body, 0, 0.4) != 1);
+    CHECK(field.at_body(0, 0.4).all != 1);
 }
 
 TEST_CASE("Walls are where a world has them, and as strong as in the nominal world whatever it does to K") {
@@ -359,13 +363,12 @@ TEST_CASE("Walls are where a world has them, and as strong as in the nominal wor
     world.ground_scale = -0.3;
     world.scene_x_m = 0.1;
     const FlownWorld flown = make_world(problem.robot, world);
-    simulation::DirectFactor effect{*model};
-    const int walls = model->tick().plant.walls();
-    const simulation::WorldSurroundings<double, simulation::DirectFactor> surroundings(flown.numbers, {}, effect,
-                                                                                       model->tick().tilt_loss);
-    const double nearness = model->direct_factor(walls, 0.2, 2) - 1;
+    simulation::DirectField field(*model);
+    const simulation::WorldSurroundings<double, simulation::DirectField> around(flown.numbers, {}, field,
+                                                                                model->tick().tilt_loss);
+    const double nearness = field.wall_nearness(0.2, 2);
     CHECK(nearness > 0.2);
-    CHECK(surroundings.wall_nearness(walls, 0.3, 2.0) == Approx(nearness).epsilon(1e-9));
+    CHECK(around.wall_nearness({0.3, 2.0}) == Approx(nearness).epsilon(1e-9));
 }
 
 TEST_CASE("Noise is standard normal, white, and the same for a tape and a tick") {

@@ -6,7 +6,7 @@
 #include "../support/random.hpp"
 #include "../support/test_robot.hpp"
 #include "downwash/simulation/closed_loop.hpp"
-#include "downwash/simulation/map_effect.hpp"
+#include "downwash/simulation/world.hpp"
 
 // The same vehicle, otherwise than its controller believes, in a general-purpose rigid-body simulator.
 
@@ -45,9 +45,9 @@ double difference_from_mujoco(const Robot& robot, const World& in) {
         // Both sides step finely; the controller acts once a tick.
         const auto finely = [&](const PlantModel& plant, dynamics::PlantState<double> at,
                                 const dynamics::Motion<double>&, const dynamics::PlantCommand<double>& command,
-                                double dt_s, const auto& factor) {
+                                double dt_s, const auto& around) {
             for (int i = 0; i < 10; ++i) {
-                at = dynamics::flight_step(plant, at, command, dt_s / 10, factor);
+                at = dynamics::flight_step(plant, at, command, dt_s / 10, around);
             }
             return at;
         };

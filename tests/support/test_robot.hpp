@@ -2,15 +2,11 @@
 
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/simulation/robot.hpp"
+#include "surroundings.hpp"
 
 namespace downwash::test {
 
 inline constexpr double quarter_turn = 1.57079632679489661923;
-
-/// No surface is near: K = 1 at every rotor.
-struct FreeAir {
-    double operator()(int /*rotor*/, double /*x_m*/, double /*z_m*/) const { return 1; }
-};
 
 /// The aerial manipulator that the tests fly: a quadrotor of 4.5 kg in X layout and an arm of 1.2 m that turns about
 /// its centre of mass. Rotors without lag, joint without limits.
@@ -67,7 +63,7 @@ inline const ModelInversion& gains_of(const Robot& robot) {
 inline void give_aids(ControlLaw& law, const controllers::Aids& aids) {
     std::visit(
         [&]<class Law>(Law& own) {
-            if constexpr (controllers::can_be_aided<Law>) {
+            if constexpr (controllers::CanBeAided<Law>) {
                 own.aids = aids;
             }
         },

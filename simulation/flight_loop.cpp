@@ -1,0 +1,69 @@
+#include "downwash/simulation/flight_loop.hpp"
+
+#include "downwash/dynamics/contact_step.hpp"
+#include "downwash/simulation/closed_loop.hpp"
+#include "downwash/simulation/noise.hpp"
+
+namespace downwash::simulation {
+namespace {
+
+/// The chosen step, as what a tick integrates with.
+struct ChosenStep {
+    const Integration& choice;
+
+    template <class Around>
+    dynamics::PlantState<double> operator()(const PlantModel& model, const dynamics::PlantState<double>& state,
+                                            const dynamics::Motion<double>& motion,
+                                            const dynamics::PlantCommand<double>& command, double dt_s,
+                                            const Around& around) const {
+        return std::visit([&](const auto& step) { return step(model, state, motion, command, dt_s, around); }, choice);
+    }
+};
+
+}  // namespace
+
+FlightState FlightLoop::tick_with(const double* noise, const FlightState& state, const ReferencePoint& reference,
+                                  controllers::Actuation<double>& given, const Integration& integration) const {
+    const ChosenStep step{integration};
+    return controllers::visit_flown(model_.law, [&](const auto& law) {
+        if (world_ != nullptr) {
+            return tick_in_world(model_, law, world_->numbers, noise, state, reference, effect_, given, step);
+        }
+        const auto motion = dynamics::motion_at(model_.plant, state.plant.q, state.plant.u);
+        const VehicleState<double>& vehicle = state;
+        return FlightState{simulation::tick(model_, law, vehicle, motion, reference, effect_, given, step),
+                           state.world};
+    });
+}
+
+FlightState FlightLoop::tick(std::int64_t number, const FlightState& state, const ReferencePoint& reference,
+                             controllers::Actuation<double>& given, const Integration& integration) const {
+    double noise[noise_count] = {};
+    if (world_ != nullptr && world_->has_noise) {
+        draw_noise(normal_levels(), world_->world.tape, number, noise, 1);
+    }
+    return tick_with(noise, state, reference, given, integration);
+}
+
+FlightState FlightLoop::quiet_tick(const FlightState& state, const ReferencePoint& reference,
+                                   controllers::Actuation<double>& given, const Integration& integration) const {
+    const double noise[noise_count] = {};
+    return tick_with(noise, state, reference, given, integration);
+}
+
+Rejection FlightLoop::fly(std::int64_t first_tick, const ReferenceSegment& segment, FlightState& state,
+                          const AfterTick& after, const Integration& integration) const {
+    ReferencePoint reference = segment.from();
+    Rejection rejection = Rejection::none;
+    for (std::int64_t t = 0; t < segment.ticks() && rejection == Rejection::none; ++t) {
+        controllers::Actuation<double> given{};
+        const FlightState next = tick(first_tick + t, state, reference, given, integration);
+        const ReferencePoint next_reference = segment.at_tick(t + 1);
+        rejection = after(state, reference, given, next, next_reference);
+        state = next;
+        reference = next_reference;
+    }
+    return rejection;
+}
+
+}  // namespace downwash::simulation

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "downwash/controllers/control_law.hpp"
+#include "downwash/dynamics/plant_model.hpp"
+#include "downwash/effects/sided_factor.hpp"
+
+namespace downwash::simulation {
+
+/// Everything about the vehicle that does not change in flight.
+struct TickModel {
+    PlantModel plant;  ///< what the controller knows, and what flies unless somebody says otherwise
+    FlownLaw law;
+    double tick_s;  ///< control period, 1 / rate_hz
+    TiltLoss tilt_loss = {};
+};
+
+}  // namespace downwash::simulation
