@@ -191,7 +191,7 @@ void fill(Run& run, const Solution& solution) {
         run.first_certified_s = record.setup_wall_s + *record.first_certified_wall_s;
     }
     if (solution.status != Status::solved) {
-        run.nearest_approach_m = record.nearest_approach_m;
+        run.nearest_approach_m = solution.nearest_approach_m;
         return;
     }
     run.cost = solution.cost;

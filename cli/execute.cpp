@@ -103,7 +103,7 @@ void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& wor
     solution.execution =
         execute(*model, *start, solution.plan->reference, goals_of(flown), aero, in, {}, problem.energy_budget_j);
     solution.execution_cost = cost_of(*solution.execution, solution.objective);
-    solution.planning.flight_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    solution.flight_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 ExitCode run(const ExecuteArguments& given) {

@@ -56,11 +56,11 @@ std::string goal_name(const Solution& solution, std::size_t number) {
 
 /// The goal that the search did not get to.
 std::string missed_goal(const Solution& solution) {
-    return solution.planning.goal ? goal_name(solution, *solution.planning.goal) : "the goal";
+    return solution.missed_goal ? goal_name(solution, *solution.missed_goal) : "the goal";
 }
 
 std::string missed_region(const Solution& solution) {
-    return solution.planning.goal ? "the region of " + missed_goal(solution) : "the goal region";
+    return solution.missed_goal ? "the region of " + missed_goal(solution) : "the goal region";
 }
 
 std::string order_rows(const VisitOrder& order, bool has_plan, const std::optional<double>& energy_budget_j) {
@@ -190,11 +190,11 @@ std::string verdict_on_search(const Solution& solution) {
         return stopped + fmt::format("A plan was found, but in {} of {} worlds its flight fails: it is not certified.",
                                      solution.certificate->failures, solution.certificate->worlds);
     }
-    if (solution.planning.obstruction && solution.planning.obstruction->cause == "certificate") {
+    if (solution.obstruction && solution.obstruction->cause == "certificate") {
         return stopped + fmt::format("No solution within the limits: every way to {} failed in too many worlds.",
                                      missed_goal(solution));
     }
-    if (solution.planning.obstruction && solution.planning.obstruction->cause == "unfinished_flight") {
+    if (solution.obstruction && solution.obstruction->cause == "unfinished_flight") {
         return stopped + fmt::format("A way to {} was found, but the time was over before its flight was.",
                                      missed_goal(solution));
     }
@@ -208,7 +208,7 @@ std::string verdict_on_search(const Solution& solution) {
                                      solution.order->visits.size() + solution.order->left_out.size());
     }
     if (solution.status == Status::approximate) {
-        const auto& off_m = solution.planning.nearest_approach_m;
+        const auto& off_m = solution.nearest_approach_m;
         return stopped + "No solution within the limits; the nearest approach to " + missed_goal(solution) +
                (off_m ? fmt::format(", {:.3f} m from its region,", *off_m) : "") + " is reported.";
     }
@@ -251,12 +251,12 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     if (record.first_certified_wall_s) {
         text += row("first certified", fmt::format("after {:.3f} s", *record.first_certified_wall_s));
     }
-    if (record.nearest_approach_m) {
+    if (solution.nearest_approach_m) {
         text += row("nearest approach",
-                    fmt::format("{:.3f} m from {}", *record.nearest_approach_m, missed_region(solution)));
+                    fmt::format("{:.3f} m from {}", *solution.nearest_approach_m, missed_region(solution)));
     }
-    if (record.obstruction) {
-        const Obstruction& o = *record.obstruction;
+    if (solution.obstruction) {
+        const Obstruction& o = *solution.obstruction;
         text += row("stopped by", fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
                                               o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m,
                                               missed_region(solution)));

@@ -15,9 +15,6 @@ namespace downwash {
 /// When the hover at the last goal ends [s]. @pre run.plan
 [[nodiscard]] double end_of_hover_s(const RunRecord& run);
 
-/// The reference of a plan at a time [s]: between two knots, or held after the last.
-[[nodiscard]] ReferencePoint reference_at(const Plan& plan, double t_s);
-
 /// The plan's set-points at the rate asked for, hold included. @throws InputError as plan_to_be_flown()
 [[nodiscard]] std::vector<Setpoint> setpoints_of(const RunRecord& run, const ExportSettings& settings);
 

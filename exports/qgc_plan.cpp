@@ -93,7 +93,7 @@ class Corners {
  private:
     static constexpr double most_bulge_m = 0.02;
 
-    [[nodiscard]] Configuration at(double t_s) const { return configuration_of(reference_at(plan_, t_s)); }
+    [[nodiscard]] Configuration at(double t_s) const { return configuration_of(plan_.at_time(t_s)); }
 
     /// How far the plan is from the straight line between its places at two times [m].
     [[nodiscard]] double bulge_m(double from_s, double to_s) const {

@@ -5,8 +5,6 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/controllers/quintic.hpp"
-#include "downwash/exports/formats.hpp"
 
 namespace downwash {
 namespace {
@@ -19,30 +17,6 @@ Vector3 in_world(const PlaneOfMotion& plane, const double vector[3]) {
 }
 
 }  // namespace
-
-ReferencePoint reference_at(const Plan& plan, double t_s) {
-    const auto begin_s = [&](const ReferenceKnot& knot) { return static_cast<double>(knot.tick) * plan.tick_s; };
-    const auto to = std::upper_bound(plan.reference.begin() + 1, plan.reference.end(), t_s,
-                                     [&](double t, const ReferenceKnot& knot) { return t < begin_s(knot); });
-    const ReferenceKnot& from = *(to - 1);
-    if (to == plan.reference.end()) {
-        ReferencePoint held = from.point;
-        std::fill(std::begin(held.velocity), std::end(held.velocity), 0);
-        std::fill(std::begin(held.acceleration), std::end(held.acceleration), 0);
-        return held;
-    }
-    const ReferenceSegment segment(from.point, to->point, to->tick - from.tick, plan.tick_s);
-    ReferencePoint point;
-    for (std::size_t axis = 0; axis < max_axes; ++axis) {
-        const auto at = controllers::quintic_at(segment.coefficients()[axis],
-                                                (t_s - begin_s(from)) * segment.inverse_duration_1_s(),
-                                                segment.inverse_duration_1_s());
-        point.position[axis] = at.position;
-        point.velocity[axis] = at.velocity;
-        point.acceleration[axis] = at.acceleration;
-    }
-    return point;
-}
 
 std::vector<Setpoint> setpoints(const Plan& plan, const PlaneOfMotion& plane, double end_s, double rate_hz) {
     if (!(rate_hz > 0 && rate_hz <= max_rate_hz)) {
@@ -63,7 +37,7 @@ std::vector<Setpoint> setpoints(const Plan& plan, const PlaneOfMotion& plane, do
     std::vector<Setpoint> points;
     points.reserve(times_s.size());
     for (const double t_s : times_s) {
-        const ReferencePoint at = reference_at(plan, t_s);
+        const ReferencePoint at = plan.at_time(t_s);
         points.push_back({t_s, plane.to_world(at.position[0], 0, at.position[1]), in_world(plane, at.velocity),
                           in_world(plane, at.acceleration), plane.heading_rad(), at.position[2], at.velocity[2],
                           at.acceleration[2]});

@@ -5,9 +5,11 @@
 #include <limits>
 #include <utility>
 
-#include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/direct_flight.hpp"
+#include "downwash/planner/goals_in_order.hpp"
+#include "downwash/planner/leg_table.hpp"
 #include "downwash/planner/order_comparison.hpp"
-#include "downwash/planner/search_clock.hpp"
+#include "downwash/planner/stopwatch.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/execution.hpp"
 
@@ -16,19 +18,16 @@ namespace {
 
 class AnyOrder {
  public:
-    AnyOrder(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
-             const LegSearch& search_leg, const SequenceSearch& search_sequence, Solution& solution)
+    AnyOrder(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
         : problem_(problem),
           model_(model),
           options_(options),
           silent_(silent(options)),
-          search_sequence_(search_sequence),
-          solution_(solution),
-          table_(problem, model, map, silent_, search_leg),
+          table_(problem, model, silent_),
           left_(problem.planner),
           comparison_(table_, [this] { return is_over(); }) {}
 
-    void run();
+    [[nodiscard]] SearchResult run();
 
  private:
     [[nodiscard]] static SolveOptions silent(SolveOptions options) {
@@ -39,7 +38,7 @@ class AnyOrder {
         return options;
     }
     [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
-    [[nodiscard]] bool has_way() const { return solution_.status == Status::solved; }
+    [[nodiscard]] bool has_way() const { return best_.status == Status::solved; }
     [[nodiscard]] bool is_limited() const { return problem_.energy_budget_j.has_value(); }
 
     [[nodiscard]] bool is_done() const { return is_over() || (options_.stop_at_first_solution && has_way()); }
@@ -48,21 +47,20 @@ class AnyOrder {
     [[nodiscard]] SearchBudget share_of_left(double share) const;
     void compare_orders(const SearchBudget& budget);
     [[nodiscard]] VisitOrder described(const PlaceOrder& order) const;
-    [[nodiscard]] double cost_of_way(const Solution& way) const;
+    [[nodiscard]] double cost_when_flown(const Found& way) const { return cost_of(way, problem_.planner.objective); }
     [[nodiscard]] bool attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only);
     [[nodiscard]] SolveOptions options_of_attempt(bool is_first_only, const PlaceOrder& order);
-    void learn_from_failure(const PlaceOrder& order, const Solution& failed);
-    void take_if_better(const PlaceOrder& order, Solution found, double begun_at_s, std::uint64_t iterations_before);
+    void learn_from_failure(const PlaceOrder& order, const Found& failed);
+    void take_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
+                        std::uint64_t iterations_before);
     void explain();
     [[nodiscard]] double energy_with(std::size_t target) const;
     void spend(std::uint64_t iterations_before);
 
     const Problem& problem_;
-    const FlightModel& model_;
+    const PlannerModel& model_;
     const SolveOptions& options_;
-    SolveOptions silent_;  ///< of searches of which the caller hears nothing
-    const SequenceSearch& search_sequence_;
-    Solution& solution_;
+    SolveOptions silent_;  ///< for searches of which the caller hears nothing
     LegTable table_;
     SearchBudget left_;
     OrderComparison comparison_;
@@ -70,7 +68,9 @@ class AnyOrder {
     double spent_at_s_ = 0;       ///< when time was last taken from what is left
     std::uint64_t attempts_ = 0;  ///< plans that asked for a certificate
     PlaceOrder failed_;           ///< in which the last search for a flight failed
-    PlaceOrder best_;             ///< of the solution; empty without one
+    Found best_;                  ///< the best flight so far
+    PlaceOrder best_order_;       ///< in which it visits places; empty without a flight
+    SearchRecord record_;
 };
 
 /// Takes what has passed since it was called last from what is left.
@@ -78,7 +78,7 @@ void AnyOrder::spend(std::uint64_t iterations_before) {
     SearchRecord work;
     const double now_s = clock_.seconds();
     work.wall_s = now_s - std::exchange(spent_at_s_, now_s);
-    work.iterations = solution_.planning.iterations - iterations_before;
+    work.iterations = record_.iterations - iterations_before;
     left_.spend(work);
 }
 
@@ -95,7 +95,7 @@ void AnyOrder::search() {
     }
     bool has_grown = false;
     for (PlaceOrder order = comparison_.chosen(); !is_done() && is_order(order);) {
-        const bool is_known = has_way() && order.places == best_.places;
+        const bool is_known = has_way() && order.places == best_order_.places;
         if (!is_known && !attempt(order, share_of_left(share_of_try), true)) {
             compare_orders(left_.part(share_of_more_legs));
             order = comparison_.chosen();
@@ -109,7 +109,7 @@ void AnyOrder::search() {
                 continue;
             }
         }
-        static_cast<void>(attempt(best_, left_, options_.stop_at_first_solution));
+        static_cast<void>(attempt(best_order_, left_, options_.stop_at_first_solution));
         break;
     }
 }
@@ -120,27 +120,28 @@ SearchBudget AnyOrder::share_of_left(double share) const {
     return left_.part(share).at_least(SearchBudget(problem_.planner).part(least)).at_most(left_);
 }
 
-void AnyOrder::run() {
+SearchResult AnyOrder::run() {
     try {
         search();
     } catch (const WorkStopped&) {  // there is what was found before
     }
     explain();
+    record_.wall_s = clock_.seconds();
+    return {std::move(best_), std::move(record_), attempts_};
 }
 
 /// Whether a whole flight took less than its legs: then there may be energy for another target.
 bool AnyOrder::leaves_energy(const PlaceOrder& order) {
-    if (!is_limited() || order.places.size() == problem_.targets.size() || !solution_.execution) {
+    if (!is_limited() || order.places.size() == problem_.targets.size() || !best_.execution) {
         return false;
     }
-    comparison_.energy_limit_j =
-        *problem_.energy_budget_j * std::max(1.0, order.energy_j / solution_.execution->energy_j);
+    comparison_.energy_limit_j = *problem_.energy_budget_j * std::max(1.0, order.energy_j / best_.execution->energy_j);
     return true;
 }
 
 void AnyOrder::compare_orders(const SearchBudget& budget) {
-    const std::uint64_t iterations = solution_.planning.iterations;
-    comparison_.compare(budget, solution_.planning);
+    const std::uint64_t iterations = record_.iterations;
+    add_work(record_, comparison_.compare(budget));
     spend(iterations);
 }
 
@@ -156,37 +157,34 @@ VisitOrder AnyOrder::described(const PlaceOrder& order) const {
     return described;
 }
 
-double AnyOrder::cost_of_way(const Solution& way) const {
-    return way.execution ? cost_of(*way.execution, problem_.planner.objective) : way.cost;
-}
-
 /// Searches for a flight in an order. @return whether there is one
 bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only) {
     Problem part = in_order(problem_, described(order));
     budget.limit(part.planner);
-    Solution found;
     const double begun_at_s = clock_.seconds();
-    const std::uint64_t iterations = solution_.planning.iterations;
-    SolveOptions options = options_of_attempt(is_first_only, order);
+    const std::uint64_t iterations = record_.iterations;
+    const SolveOptions options = options_of_attempt(is_first_only, order);
     // Short rounds are for a first flight, and there is one.
-    constexpr double least_round = 0.22;  // two rounds then, of 22 and 78 %
-    search_sequence_(part, options, has_way() ? least_round : 0, attempts_, found);
+    constexpr double min_round = 0.22;  // two rounds then, of 22 and 78 %
+    SearchResult result = search_in_order(part, model_, options, has_way() ? min_round : 0, attempts_);
+    attempts_ = result.attempts;
+    Found& found = result.found;
     if (found.status == Status::solved && is_limited() && !found.execution) {
-        double wall_s = 0;
         found.execution =
-            execute_directly(model_, start_state(model_, part.start), *found.plan, goals_of(part), part.energy_budget_j,
-                             wall_s, [this] { return options_.stop.stop_requested(); });
+            fly_directly(*model_.flight, start_state(*model_.flight, part.start), *found.plan, goals_of(part),
+                         part.energy_budget_j, [this] { return options_.stop.stop_requested(); })
+                .execution;
         if (found.execution->outcome == Outcome::over_budget) {
             found.status = Status::approximate;
         }
     }
-    add_work(solution_.planning, found.planning);
+    add_work(record_, result.record);
     spend(iterations);
-    if (found.status != Status::solved) {
+    const bool is_found = found.status == Status::solved;
+    if (!is_found) {
         learn_from_failure(order, found);
     }
-    const bool is_found = found.status == Status::solved;
-    take_if_better(order, std::move(found), begun_at_s, iterations);
+    take_if_better(order, std::move(result), begun_at_s, iterations);
     return is_found;
 }
 
@@ -195,20 +193,20 @@ SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& 
     inner.known_plan.reset();
     inner.known_places.clear();
     inner.stop_at_first_solution = is_first_only;
-    const bool counts_alone = !has_way() || order.places.size() > best_.places.size();
-    const double to_beat = counts_alone ? std::numeric_limits<double>::infinity() : cost_of_way(solution_);
+    const bool counts_alone = !has_way() || order.places.size() > best_order_.places.size();
+    const double to_beat = counts_alone ? std::numeric_limits<double>::infinity() : cost_when_flown(best_);
     if (options_.on_progress) {
         inner.on_progress = [this, to_beat](Progress progress) {
             progress.wall_s = clock_.seconds();
-            progress.iterations += solution_.planning.iterations;
+            progress.iterations += record_.iterations;
             if (has_way()) {
-                progress.best_cost = std::min(progress.best_cost.value_or(solution_.cost), to_beat);
+                progress.best_cost = std::min(progress.best_cost.value_or(best_.cost), to_beat);
             }
             options_.on_progress(progress);
         };
     }
     inner.on_plan = nullptr;
-    if (options_.on_plan && (counts_alone || order.places.size() == best_.places.size())) {
+    if (options_.on_plan && (counts_alone || order.places.size() == best_order_.places.size())) {
         inner.on_plan = [this, to_beat](const FoundPlan& found) {
             if (found.flown_cost.value_or(found.cost) < to_beat) {
                 options_.on_plan(found);
@@ -220,13 +218,13 @@ SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& 
 
 /// What does not fly as a whole is not to be chosen again: at once where it takes too much energy, else when it fails
 /// for the second time.
-void AnyOrder::learn_from_failure(const PlaceOrder& order, const Solution& failed) {
+void AnyOrder::learn_from_failure(const PlaceOrder& order, const Found& failed) {
     if (options_.stop.stop_requested()) {
         return;
     }
     const bool is_too_much =
         (failed.execution && failed.execution->outcome == Outcome::over_budget) ||
-        (failed.planning.obstruction && failed.planning.obstruction->cause == name_of(Outcome::over_budget)) ||
+        (failed.obstruction && failed.obstruction->cause == name_of(Outcome::over_budget)) ||
         (failed.certificate && failed.certificate->causes.contains(std::string(name_of(Outcome::over_budget))));
     if (is_too_much) {
         constexpr double less = 0.98;
@@ -237,7 +235,7 @@ void AnyOrder::learn_from_failure(const PlaceOrder& order, const Solution& faile
         failed_ = order;  // it is tried once more: luck differs between searches
         return;
     }
-    const std::size_t goal = failed.planning.goal.value_or(1);
+    const std::size_t goal = failed.missed_goal.value_or(1);
     const std::size_t outside = table_.estimates().outside();
     table_.give_up(goal >= 2 ? order.places[goal - 2] : outside,
                    goal <= order.places.size() ? order.places[goal - 1] : outside);
@@ -245,55 +243,39 @@ void AnyOrder::learn_from_failure(const PlaceOrder& order, const Solution& faile
 
 /// Takes a flight as the solution if it visits more than the present one, or as many for less; where there is none yet,
 /// a part of one that comes farther.
-void AnyOrder::take_if_better(const PlaceOrder& order, Solution found, double begun_at_s,
+void AnyOrder::take_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
                               std::uint64_t iterations_before) {
+    Found& found = result.found;
     const bool is_solved = found.status == Status::solved;
-    const bool visits_more = order.places.size() > best_.places.size();
-    const bool is_better = has_way() ? is_solved && (visits_more || (order.places.size() == best_.places.size() &&
-                                                                     cost_of_way(found) < cost_of_way(solution_)))
-                                     : is_solved || !solution_.plan ||
-                                           found.planning.goal.value_or(0) > solution_.planning.goal.value_or(0);
-    SearchRecord& whole = solution_.planning;
-    const auto note_first = [begun_at_s](std::optional<double>& at_s, const std::optional<double>& in_part_s) {
-        if (!at_s && in_part_s) {
-            at_s = begun_at_s + *in_part_s;
-        }
-    };
-    note_first(whole.first_solution_wall_s, found.planning.first_solution_wall_s);
-    note_first(whole.first_certified_wall_s, found.planning.first_certified_wall_s);
+    const bool visits_more = order.places.size() > best_order_.places.size();
+    const bool is_better =
+        has_way() ? is_solved && (visits_more || (order.places.size() == best_order_.places.size() &&
+                                                  cost_when_flown(found) < cost_when_flown(best_)))
+                  : is_solved || !best_.plan || found.missed_goal.value_or(0) > best_.missed_goal.value_or(0);
+    note_first_plans(record_, result.record, begun_at_s);
     if (!is_better) {
         return;
     }
     if (!has_way() || visits_more) {
-        whole.improvements.clear();  // of flights to fewer targets
+        record_.improvements.clear();  // those of flights to fewer targets
     }
-    for (const Improvement& each : found.planning.improvements) {
-        if (whole.improvements.empty() ||
-            each.flown_cost.value_or(each.cost) < whole.improvements.back().flown_cost.value_or(each.cost)) {
-            whole.improvements.push_back(
+    for (const Improvement& each : result.record.improvements) {
+        if (record_.improvements.empty() ||
+            each.flown_cost.value_or(each.cost) < record_.improvements.back().flown_cost.value_or(each.cost)) {
+            record_.improvements.push_back(
                 {begun_at_s + each.wall_s, iterations_before + each.iteration, each.cost, each.flown_cost});
         }
     }
-    whole.flight_wall_s = found.planning.flight_wall_s;
-    whole.nearest_approach_m = found.planning.nearest_approach_m;
-    whole.obstruction = found.planning.obstruction;
-    whole.goal = found.planning.goal;
-    best_ = order;
-    solution_.status = found.status;
-    solution_.cost = found.cost;
-    solution_.plan = std::move(found.plan);
-    solution_.tree = std::move(found.tree);
-    solution_.certificate = found.certificate;
-    solution_.execution = std::move(found.execution);
-    solution_.stops = std::move(found.stops);
+    best_order_ = order;
+    best_ = std::move(found);
 }
 
 /// Which targets are left out, and why. Where no flight to one was found, the solution is approximate.
 void AnyOrder::explain() {
-    PlaceOrder order = best_;
-    if (has_way() && !best_.is_best) {
+    PlaceOrder order = best_order_;
+    if (has_way() && !best_order_.is_best) {
         const PlaceOrder known = comparison_.chosen();
-        order.is_best = known.is_best && known.places == best_.places;
+        order.is_best = known.is_best && known.places == best_order_.places;
     }
     VisitOrder described = this->described(order);
     for (std::size_t target = 0; target < problem_.targets.size(); ++target) {
@@ -306,12 +288,11 @@ void AnyOrder::explain() {
         if (is_limited() && std::isfinite(energy_j) && !table_.is_out_of_reach(target)) {
             left_out = {target, LeftOutReason::energy_budget, energy_j};
         } else if (has_way()) {
-            solution_.status = Status::approximate;
+            best_.status = Status::approximate;
         }
         described.left_out.push_back(left_out);
     }
-    solution_.order = std::move(described);
-    solution_.planning.wall_s = clock_.seconds();
+    best_.order = std::move(described);
 }
 
 /// What a target more would take, in the cheapest order with it [J].
@@ -323,7 +304,7 @@ double AnyOrder::energy_with(std::size_t target) const {
     std::size_t count = 0;
     for (std::size_t place = 0; place < all.places(); ++place) {
         const std::size_t of = all.target_of(place);
-        const bool is_wanted = of == target || std::ranges::find(best_.places, place) != best_.places.end();
+        const bool is_wanted = of == target || std::ranges::find(best_order_.places, place) != best_order_.places.end();
         if (is_wanted) {
             numbers[of] = numbers[of] == problem_.targets.size() ? count++ : numbers[of];
             places.push_back(place);
@@ -344,10 +325,8 @@ double AnyOrder::energy_with(std::size_t target) const {
 
 }  // namespace
 
-void solve_in_any_order(const Problem& problem, const FlightModel& model, const AeroMap* map,
-                        const SolveOptions& options, const LegSearch& search_leg, const SequenceSearch& search_sequence,
-                        Solution& solution) {
-    AnyOrder(problem, model, map, options, search_leg, search_sequence, solution).run();
+SearchResult search_in_any_order(const Problem& problem, const PlannerModel& model, const SolveOptions& options) {
+    return AnyOrder(problem, model, options).run();
 }
 
 }  // namespace downwash::planning

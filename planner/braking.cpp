@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "downwash/planner/planner.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/search/search_space.hpp"
@@ -176,10 +175,9 @@ void Braking::fly(std::span<Try> tries, const std::vector<FlightState>& fleet, s
     const std::int64_t settling = std::llround(goal_settling_s / model_->tick().tick_s);
     std::vector<FlightJob> jobs;
     for (const Try& each : tries) {
-        const Plan held = with_hover(each.plan, each.hover, *model_);
         std::vector<FlightLeg> legs;
-        for (std::size_t i = 1; i < held.reference.size(); ++i) {
-            legs.push_back({segment_to(held, i)});
+        for (const ReferenceSegment& segment : with_hover(each.plan, each.hover, *model_).segments()) {
+            legs.push_back({segment});
         }
         for (std::size_t i = first_world; i < last_world; ++i) {
             jobs.push_back({fleet[i], legs, settling, &worlds_[i], 0, &each.hover});
@@ -218,7 +216,7 @@ SafeStops StopFinder::along(const Plan& plan, const StopCondition& is_over) {
     }
     Plan moments{{}, plan.tick_s};
     for (const std::int64_t tick : ticks) {
-        moments.reference.push_back({tick, reference_of(plan, tick)});
+        moments.reference.push_back({tick, plan.at(tick)});
     }
     const FlightState believed = start_state(*model_, problem_.start);
     std::vector<FlightJob> fleet{{believed, {}, 0, &model_->nominal_world()}};
@@ -253,11 +251,6 @@ SafeStops StopFinder::along(const Plan& plan, const StopCondition& is_over) {
         stops.share_without = static_cast<double>(without) / static_cast<double>(ticks.back());
     }
     return stops;
-}
-
-bool stops_less(const SafeStops& plan, const SafeStops& other) {
-    constexpr double clearly = 0.01;
-    return plan.share_without > other.share_without + clearly;
 }
 
 }  // namespace downwash::planning

@@ -8,7 +8,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/plan.hpp"
-#include "downwash/planner/solution.hpp"
+#include "downwash/planner/safe_stops.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/world.hpp"
@@ -87,8 +87,5 @@ class DOWNWASH_EXPORT StopFinder {
     Braking braking_;
     WorldFlights flights_;
 };
-
-/// Whether a plan has no safe stop for clearly more of its time than another one: by a hundredth of it.
-[[nodiscard]] DOWNWASH_EXPORT bool stops_less(const SafeStops& plan, const SafeStops& other);
 
 }  // namespace downwash::planning

@@ -7,7 +7,10 @@
 #include <system_error>
 #include <utility>
 
+#include "downwash/planner/braking.hpp"
+#include "downwash/planner/direct_flight.hpp"
 #include "downwash/planner/search_clock.hpp"
+#include "downwash/planner/worlds.hpp"
 #include "downwash/rivals/control_planners.hpp"
 #include "downwash/search/flight_space.hpp"
 #include "downwash/search/flight_tree_planner.hpp"
@@ -34,32 +37,30 @@ Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
 /// counts, and everything that was simulated is accounted for.
 class FlightSearch {
  public:
-    FlightSearch(const Problem& part, const Problem& whole, const FlightModel& model, const AeroMap* map,
-                 const Course& before, const PlanChecks& checks, const SolveOptions& options, Solution& solution)
+    FlightSearch(const Problem& part, const Problem& whole, const PlannerModel& model, const Course& before,
+                 const PlanChecks& checks, const SolveOptions& options)
         : options_(options),
           before_(before),
           goals_(before.goals),
-          solution_(solution),
-          clock_(part, options, solution),
+          clock_(part.planner, options),
           worlds_(checks.worlds),
-          stop_finder_(before.goals.size() == whole.stops.size() ? checks.stops : nullptr),
+          stop_finder_(before.goals.size() == whole.stops.size() ? checks.stop_finder : nullptr),
           search_worlds_(worlds_ != nullptr ? worlds_->for_search(before) : SearchWorlds{}),
-          task_(part, model, map, before.vehicle, worlds_ != nullptr ? &search_worlds_ : nullptr,
-                before.plan.reference.empty() ? 0 : before.plan.reference.back().tick),
-          start_(before.plan.reference.empty() ? before.vehicle : start_state(model, whole.start)),
-          attempts_(before.attempts) {
+          task_(part, *model.flight, model.map.get(), before.vehicle, worlds_ != nullptr ? &search_worlds_ : nullptr,
+                before.ticks()),
+          start_(before.plan.reference.empty() ? before.vehicle : start_state(*model.flight, whole.start)) {
         goals_.push_back(part.goal);
+        result_.attempts = before.attempts;
     }
 
     /// RRT* of flights.
-    void run_tree();
+    [[nodiscard]] SearchResult run_tree();
     /// OMPL's planners over controls.
-    void run_controls();
-    /// See PartSearch.
-    [[nodiscard]] std::optional<std::size_t> weak_goal() const { return weak_goal_; }
+    [[nodiscard]] SearchResult run_controls();
 
  private:
-    [[nodiscard]] bool is_over() { return weak_goal_ || clock_.is_over(); }
+    [[nodiscard]] bool is_over() { return result_.weak_goal || clock_.is_over(); }
+    [[nodiscard]] bool has_plan() const { return result_.found.status == Status::solved; }
     [[nodiscard]] bool survives_execution(const Plan& plan, double cost);
     [[nodiscard]] bool flies_well(const Plan& plan);
     [[nodiscard]] bool needs_certificate() const { return worlds_ != nullptr && goals_.size() == worlds_->goals(); }
@@ -70,29 +71,33 @@ class FlightSearch {
     [[nodiscard]] bool can_stop(const Plan& plan);
     [[nodiscard]] std::vector<Counterexample> lessons();
     void accept(const Plan& plan, double cost, std::uint64_t iteration);
-    void account(std::uint64_t iterations, const FlightStatistics& statistics);
-    void report_failure(const FlightStatistics& statistics, Status status, std::optional<Plan> plan, double cost,
-                        std::optional<double> nearest_approach_m);
+    /// A plan that comes near the goal only.
+    struct Approach {
+        Status status = Status::none;
+        std::optional<Plan> plan;
+        double cost = 0;
+        std::optional<double> nearest_m;
+    };
+    [[nodiscard]] SearchResult result(std::uint64_t iterations, const FlightStatistics& statistics,
+                                      const Approach& nearest);
+    void report_failure(const FlightStatistics& statistics, const Approach& nearest);
 
     const SolveOptions& options_;
     const Course& before_;
     std::vector<Goal> goals_;  ///< up to the one that is searched for
-    Solution& solution_;
+    SearchResult result_;      ///< with the best plan so far
     SearchClock clock_;
     ProblemWorlds* worlds_;
     StopFinder* stop_finder_;  ///< of plans to the last goal
     SearchWorlds search_worlds_;
     SearchTask task_;
-    FlightState start_;                   ///< of the whole flight
-    std::optional<Execution> execution_;  ///< made last
-    double execution_wall_s_ = 0;
+    FlightState start_;                            ///< where the whole flight begins
+    std::optional<DirectFlight> flight_;           ///< made last
     std::optional<Obstruction> discarded_;         ///< what discarded the last plan that was
-    std::uint64_t attempts_;                       ///< plans that asked for a certificate
     std::optional<Certificate> certificate_;       ///< of the plan that was executed last
     std::optional<SafeStops> stops_;               ///< along that plan
     std::vector<Counterexample> counterexamples_;  ///< in which that plan failed
     std::optional<std::size_t> weakest_;           ///< part of that plan
-    std::optional<std::size_t> weak_goal_;         ///< see PartSearch
     /// Of the plans without a certificate the one with the lowest bound of its failure probability: one that was
     /// interrupted after a few worlds says little.
     struct Uncertified {
@@ -122,22 +127,22 @@ bool FlightSearch::survives_execution(const Plan& plan, double cost) {
 /// Whether a plan of MP-ARM-ADA is good when executed with direct aerodynamics. If the plan needs a certificate,
 /// another thread begins with it meanwhile; a plan that is not good has asked for none.
 bool FlightSearch::flies_well(const Plan& plan) {
-    const Plan flown = before_.continued_by(plan);
+    const Plan flown = before_.plan.followed_by(plan);
     bool is_finished = false;
     std::atomic<bool> is_bad = false;
     const auto fly = [&] {
         try {
-            execution_ = execute_directly(task_.model, start_, flown, goals_, task_.problem.energy_budget_j,
-                                          execution_wall_s_, [this] { return is_over(); });
+            flight_ = fly_directly(task_.model, start_, flown, goals_, task_.problem.energy_budget_j,
+                                   [this] { return is_over(); });
             is_finished = true;
         } catch (const WorkStopped&) {  // too late
         }
-        is_bad = !is_finished || !is_good(*execution_, task_.problem.planner.safety_margin_m);
+        is_bad = !is_finished || !is_good(flight_->execution, task_.problem.planner.safety_margin_m);
     };
     const auto certify = [&] {
         if (!is_bad) {
             certificate_ = worlds_->certify(
-                flown, attempts_ + 1, [&] { return is_bad || is_over(); }, world_counter());
+                flown, result_.attempts + 1, [&] { return is_bad || is_over(); }, world_counter());
             clock_.has_certified();
         }
     };
@@ -161,7 +166,7 @@ bool FlightSearch::flies_well(const Plan& plan) {
     if (!is_finished) {
         discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
     } else if (is_bad) {
-        discarded_ = obstruction_of(*execution_, task_.space);
+        discarded_ = obstruction_of(flight_->execution, task_.space);
     }
     return !is_bad;
 }
@@ -173,21 +178,21 @@ bool FlightSearch::can_stop(const Plan& plan) {
         return true;
     }
     try {
-        stops_ = stop_finder_->along(before_.continued_by(plan), [this] { return clock_.is_over(); });
+        stops_ = stop_finder_->along(before_.plan.followed_by(plan), [this] { return clock_.is_over(); });
     } catch (const WorkStopped&) {  // too late to know, and to find another one
-        return solution_.status != Status::solved;
+        return !has_plan();
     }
-    return !solution_.stops || !stops_less(*stops_, *solution_.stops);
+    return !result_.found.stops || !is_clearly_worse(*stops_, *result_.found.stops);
 }
 
 /// Whether a plan fails rarely enough in worlds that the search has not seen. One that ends before the last goal needs
 /// no certificate; any other has been flown for one.
 bool FlightSearch::is_certified(const Plan& plan, double cost) {
     if (needs_certificate()) {
-        ++attempts_;
+        ++result_.attempts;
     } else {
         certificate_ = worlds_->screen(
-            before_.continued_by(plan), goals_.size(), [this] { return is_over(); }, world_counter());
+            before_.plan.followed_by(plan), goals_.size(), [this] { return is_over(); }, world_counter());
         clock_.has_certified();
     }
     known_at_s_ = clock_.seconds();
@@ -207,8 +212,8 @@ bool FlightSearch::is_certified(const Plan& plan, double cost) {
 /// earlier part ends the search, unless it has shown that these parts can be good enough.
 std::vector<Counterexample> FlightSearch::lessons() {
     const std::optional<std::size_t> weakest = std::exchange(weakest_, std::nullopt);
-    if (weakest && *weakest < before_.goals.size() && solution_.status != Status::solved) {
-        weak_goal_ = weakest;
+    if (weakest && *weakest < before_.goals.size() && !has_plan()) {
+        result_.weak_goal = weakest;
     }
     return std::exchange(counterexamples_, {});
 }
@@ -216,23 +221,25 @@ std::vector<Counterexample> FlightSearch::lessons() {
 /// Takes on the plan that survived last; it has counted since that was known. One that is cheaper in the planner's
 /// model only, and not when executed, is no better.
 void FlightSearch::accept(const Plan& plan, double cost, std::uint64_t iteration) {
+    Found& best = result_.found;
     const CostFunction& objective = task_.problem.planner.objective;
     std::optional<double> executed_cost;
-    if (execution_) {
-        executed_cost = cost_of(*execution_, objective);
-        if (solution_.execution && *executed_cost >= cost_of(*solution_.execution, objective)) {
+    if (flight_) {
+        executed_cost = cost_of(flight_->execution, objective);
+        if (best.execution && *executed_cost >= cost_of(*best.execution, objective)) {
             return;
         }
-        solution_.execution = std::move(*std::exchange(execution_, std::nullopt));
-        solution_.planning.flight_wall_s = execution_wall_s_;
+        best.execution = std::move(flight_->execution);
+        best.flight_wall_s = flight_->wall_s;
+        flight_.reset();
     }
-    solution_.status = Status::solved;
-    solution_.plan = plan;
-    solution_.cost = cost;
-    solution_.certificate = certificate_;
-    solution_.stops = stops_;
-    if (certificate_ && !solution_.planning.first_certified_wall_s) {
-        solution_.planning.first_certified_wall_s = known_at_s_;
+    best.status = Status::solved;
+    best.plan = plan;
+    best.cost = cost;
+    best.certificate = certificate_;
+    best.stops = stops_;
+    if (certificate_ && !clock_.record.first_certified_wall_s) {
+        clock_.record.first_certified_wall_s = known_at_s_;
     }
     clock_.improved(known_at_s_, cost, iteration, executed_cost);
     if (options_.on_plan) {
@@ -240,38 +247,44 @@ void FlightSearch::accept(const Plan& plan, double cost, std::uint64_t iteration
     }
 }
 
-void FlightSearch::account(std::uint64_t iterations, const FlightStatistics& statistics) {
-    SearchRecord& record = solution_.planning;
+/// What the search came to. @param nearest in place of a plan, if there is none
+SearchResult FlightSearch::result(std::uint64_t iterations, const FlightStatistics& statistics,
+                                  const Approach& nearest) {
+    SearchRecord& record = clock_.record;
     record.wall_s = clock_.seconds();
     record.iterations = iterations;
     record.edges_simulated = statistics.edges;
     record.simulated_s = static_cast<double>(statistics.ticks) * task_.model.tick().tick_s;
     record.states_checked = statistics.states_checked;
     record.rejected = statistics.rejected;
-    if (solution_.certificate) {
-        solution_.certificate->attempts = attempts_;
+    result_.record = std::move(record);
+    if (!has_plan()) {
+        report_failure(statistics, nearest);
     }
+    if (result_.found.certificate) {
+        result_.found.certificate->attempts = result_.attempts;
+    }
+    return std::move(result_);
 }
 
 /// Of a search that found no plan that counts: what it came to, and what stood before the goal. If it had a plan, that
 /// is what became of its execution.
-void FlightSearch::report_failure(const FlightStatistics& statistics, Status status, std::optional<Plan> plan,
-                                  double cost, std::optional<double> nearest_approach_m) {
-    solution_.planning.obstruction = discarded_ ? discarded_ : statistics.obstruction;
-    solution_.planning.nearest_approach_m = nearest_approach_m;
-    solution_.status = status;
-    solution_.plan = std::move(plan);
-    solution_.cost = cost;
+void FlightSearch::report_failure(const FlightStatistics& statistics, const Approach& nearest) {
+    Found& found = result_.found;
+    found.obstruction = discarded_ ? discarded_ : statistics.obstruction;
+    found.nearest_approach_m = nearest.nearest_m;
+    found.status = nearest.status;
+    found.plan = nearest.plan;
+    found.cost = nearest.cost;
     if (uncertified_) {
-        solution_.status = Status::approximate;
-        solution_.plan = uncertified_->plan;
-        solution_.cost = uncertified_->cost;
-        solution_.certificate = uncertified_->certificate;
-        solution_.certificate->attempts = attempts_;
+        found.status = Status::approximate;
+        found.plan = uncertified_->plan;
+        found.cost = uncertified_->cost;
+        found.certificate = uncertified_->certificate;
     }
 }
 
-void FlightSearch::run_controls() {
+SearchResult FlightSearch::run_controls() {
     const PlannerSettings& settings = task_.problem.planner;
     Random random(settings.seed);
     PlannedFlights planned(
@@ -291,15 +304,12 @@ void FlightSearch::run_controls() {
         return true;
     };
     ControlResult result = plan_by_controls(flights, random, hooks);
-    account(result.iterations, planned.statistics());
-    solution_.tree = std::move(result.tree);
-    if (solution_.status != Status::solved) {
-        report_failure(planned.statistics(), result.status, std::move(result.plan), result.cost,
-                       result.nearest_approach_m);
-    }
+    result_.found.tree = std::move(result.tree);
+    return this->result(result.iterations, planned.statistics(),
+                        {result.status, std::move(result.plan), result.cost, result.nearest_approach_m});
 }
 
-void FlightSearch::run_tree() {
+SearchResult FlightSearch::run_tree() {
     const QuietOmpl quiet;
     const PlannerSettings& settings = task_.problem.planner;
     const double tick_s = task_.model.tick().tick_s;
@@ -322,42 +332,27 @@ void FlightSearch::run_tree() {
     planner.setup();
     planner.solve(ompl::base::PlannerTerminationCondition([this] { return is_over(); }));
 
-    const FlightStatistics statistics = planner.statistics();
-    account(planner.iterations(), statistics);
     if (options_.keep_tree) {
-        solution_.tree = tree_of(
+        result_.found.tree = tree_of(
             planner, [](const ompl::base::State* state) { return configuration_of(point_of(state).reference); });
     }
-    if (solution_.status != Status::solved) {
-        const FlightNode& nearest = planner.growth().nearest_to_goal();
-        const bool has_moved = nearest.parent != nullptr;
-        report_failure(statistics, has_moved ? Status::approximate : Status::none,
-                       has_moved ? std::optional(planner.growth().tree().plan_to(nearest)) : std::nullopt,
-                       has_moved ? nearest.cost : 0, planner.growth().nearest_distance_m());
+    const FlightNode& nearest = planner.growth().nearest_to_goal();
+    Approach approach;
+    approach.nearest_m = planner.growth().nearest_distance_m();
+    if (nearest.parent != nullptr) {
+        approach.status = Status::approximate;
+        approach.plan = planner.growth().tree().plan_to(nearest);
+        approach.cost = nearest.cost;
     }
+    return result(planner.iterations(), planner.statistics(), approach);
 }
 
 }  // namespace
 
-Execution execute_directly(const FlightModel& model, const FlightState& start, const Plan& plan,
-                           const std::vector<Goal>& goals, std::optional<double> energy_budget_j, double& wall_s,
-                           const StopCondition& is_over) {
-    const Stopwatch clock;
-    Execution execution = execute(model, start, plan.reference, goals, true, {}, is_over, energy_budget_j);
-    wall_s = clock.seconds();
-    return execution;
-}
-
-bool is_good(const Execution& flight, double safety_margin_m) {
-    return flight.outcome == Outcome::ok && flight.min_clearance_m >= safety_margin_m;
-}
-
-std::optional<std::size_t> search_flights(const Problem& part, const Problem& whole, const FlightModel& model,
-                                          const AeroMap* map, const Course& before, const PlanChecks& checks,
-                                          const SolveOptions& options, Solution& solution) {
-    FlightSearch search(part, whole, model, map, before, checks, options, solution);
-    part.planner.algorithm == "rrt-star" ? search.run_tree() : search.run_controls();
-    return search.weak_goal();
+SearchResult search_flights(const Problem& part, const Problem& whole, const PlannerModel& model, const Course& before,
+                            const PlanChecks& checks, const SolveOptions& options) {
+    FlightSearch search(part, whole, model, before, checks, options);
+    return part.planner.algorithm == "rrt-star" ? search.run_tree() : search.run_controls();
 }
 
 }  // namespace downwash::planning

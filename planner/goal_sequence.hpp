@@ -1,55 +1,99 @@
 #pragma once
 
-#include <functional>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "downwash/base/export.hpp"
-#include "downwash/planner/solution.hpp"
+#include "downwash/planner/course.hpp"
+#include "downwash/planner/search_budget.hpp"
+#include "downwash/planner/search_result.hpp"
 #include "downwash/planner/solve_options.hpp"
 #include "downwash/problems/problem.hpp"
 
 namespace downwash::planning {
 
-/// What lies before a search for the way to one of several goals: the flight to those before it. Empty for the first.
-struct Course {
-    std::vector<Goal> goals;     ///< reached and held
-    Plan plan;                   ///< through them, to the end of the last hold
-    std::uint64_t attempts = 0;  ///< plans that asked for a certificate on the way
-    FlightState vehicle;         ///< the whole vehicle there, as the planner's own model flies it
-    double cost = 0;
+/// Plans goals in their order with one search for each, from the whole vehicle that holds at the goal before: in a
+/// first round until there is a whole way, then in rounds that take twice as long each, for cheaper ways. Where the
+/// flights of a plan fail on the way to an earlier goal, the search goes back to that goal. More of a round's time goes
+/// to the parts that became cheaper in the one before. The order is kept, and every part is found by itself: the whole
+/// is not the best of all ways through the goals. If no round finds a whole way, what there is of one is `approximate`.
+///
+/// The sequence says what to search for next and takes what was found:
+///
+///     while (const auto next = sequence.next()) {
+///         sequence.add(search_goal(next->problem, ...));
+///     }
+class DOWNWASH_EXPORT GoalSequence {
+ public:
+    /// @param min_round share of the limits that a round after the first takes at least
+    /// @param attempts plans that asked for a certificate before   @pre problem, model and options outlive it
+    GoalSequence(const Problem& problem, const PlannerModel& model, const SolveOptions& options, double min_round,
+                 std::uint64_t attempts);
+    GoalSequence(const GoalSequence&) = delete;
+    GoalSequence& operator=(const GoalSequence&) = delete;
 
-    /// The course before the first goal.
-    [[nodiscard]] DOWNWASH_EXPORT static Course from_start(const Problem& problem, const FlightModel& model);
+    /// A search for the way to the next goal.
+    struct Part {
+        Problem problem;       ///< without stops, with the limits and the seed of this search
+        const Course* before;  ///< at whose end it begins, until add()
+        SolveOptions options;  ///< report its progress as that of the whole
+    };
+    /// The next search; empty when all is done.
+    [[nodiscard]] std::optional<Part> next();
+    /// Takes what the search of the last next() came to.
+    void add(SearchResult part);
+    /// What all searches came to.
+    [[nodiscard]] SearchResult result() &&;
 
-    /// The course and a plan that begins where it ends, as one plan.
-    [[nodiscard]] Plan continued_by(const Plan& next) const;
+ private:
+    /// One try to find a whole way.
+    struct Round {
+        SearchBudget left;
+        std::vector<Course> courses;     ///< before each part, the one that is searched for included
+        Found way;                       ///< as far as it has come
+        std::vector<double> part_costs;  ///< of the parts that were found
+    };
+
+    [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
+    [[nodiscard]] bool has_way() const { return best_.status == Status::solved; }
+    [[nodiscard]] Round new_round(const SearchBudget& budget) const;
+    [[nodiscard]] bool goes_on_after(SearchResult part);
+    [[nodiscard]] bool go_back(std::size_t part);
+    [[nodiscard]] bool give_up();
+    void end_round();
+    [[nodiscard]] SearchBudget budget_of(std::size_t part) const;
+    [[nodiscard]] SolveOptions options_of_part();
+    [[nodiscard]] double share(std::size_t part) const;
+    [[nodiscard]] double cost_when_flown(const Found& way) const { return cost_of(way, problem_.planner.objective); }
+    [[nodiscard]] bool is_better(const Found& way) const;
+    void note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,
+                           std::uint64_t iterations_before);
+    void take_farther();
+    void take(Round round);
+
+    const Problem& problem_;
+    const PlannerModel& model_;
+    const SolveOptions& options_;
+    double min_round_;  ///< see the constructor
+    std::vector<Goal> goals_;
+    std::vector<std::uint32_t> searches_;  ///< for the way to each goal so far; each draws other samples
+    std::vector<std::uint32_t> given_up_;  ///< how many of these took too long
+    SearchBudget whole_;
+    SearchBudget left_;
+    SearchBudget part_budget_;  ///< of the search that is going on
+    std::size_t number_ = 1;    ///< of the round that is going on
+    bool is_last_ = false;      ///< there will be no other round
+    bool is_done_ = false;
+    SearchRecord round_work_;  ///< what the round that is going on may take
+    Round round_;              ///< that is going on
+    Found best_;               ///< the best way so far or, without one, the farthest
+    SearchRecord record_;
+    std::uint64_t attempts_;          ///< plans that asked for a certificate
+    std::vector<double> part_costs_;  ///< of the best way
+    std::vector<double> gains_;       ///< by how much each part became cheaper when the best way last did
+    double told_cost_ = std::numeric_limits<double>::infinity();  ///< cost of the best way that the caller knows
 };
-
-/// Adds a part's plan and the hold at its end to a course, and flies them in the planner's model.
-/// @param cost of the part, hold included   @param plans_flights what was planned by flights flies as it did; of
-/// MP-ARM's plans nobody has to know where the vehicle gets to, as none of them looks at it
-[[nodiscard]] Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const FlightModel& model,
-                              const AeroMap* map, bool plans_flights);
-
-/// Searches for the way to the goal of a problem without stops, whose start is at the end of the course before. Fills
-/// what it finds, and how that went, into the solution: cost and plan from there on, and, where it was flown with
-/// direct aerodynamics, the execution of course and plan together.
-/// @return the goal before, from 0, the way to which has to be searched anew: its flights fail most often in the worlds
-/// of certificates, so that no way from there helps. Empty otherwise
-using PartSearch = std::function<std::optional<std::size_t>(const Problem& part, const SolveOptions&,
-                                                            const Course& before, Solution&)>;
-
-/// Searches goal by goal, each from the whole vehicle that holds at the one before: in a first round until there is a
-/// whole way, then in rounds that take twice as long each, for cheaper ways. Where the flights of a plan fail on the
-/// way to an earlier goal, the search goes back to that goal. More of a round's time goes to the parts that became
-/// cheaper in the one before. The order is kept, and every part is found by itself: the whole is not the best of all
-/// ways through the goals. If no round finds a whole way, what there is of one is `approximate`.
-/// @param map of the planner's own model; nullptr for none
-/// @param least_round share of the limits that a round after the first takes at least
-/// @param attempts plans that asked for a certificate before, and then with those of this search
-DOWNWASH_EXPORT void solve_in_turn(const Problem& problem, const FlightModel& model, const AeroMap* map,
-                                   const SolveOptions& options, const PartSearch& search, double least_round,
-                                   std::uint64_t& attempts, Solution& solution);
 
 }  // namespace downwash::planning

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "downwash/planner/goal_search.hpp"
 #include "downwash/search/free_air_cost.hpp"
 
 namespace downwash::planning {
@@ -94,18 +95,15 @@ class LegTable::Bounds {
     FreeAirCost cost_, energy_;
 };
 
-LegTable::LegTable(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
-                   LegSearch search)
+LegTable::LegTable(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
     : problem_(problem),
       model_(model),
-      map_(map),
       options_(options),
-      search_(std::move(search)),
-      start_(Course::from_start(problem, model)),
+      start_(Course::from_start(problem, *model.flight)),
       estimates_(targets_of_places(problem)) {
     const Configuration start = problem.start.configuration();
     for (auto& [visit, goal] : goals_at_places(problem)) {
-        bounds_.push_back(std::make_unique<Bounds>(problem, goal, model));
+        bounds_.push_back(std::make_unique<Bounds>(problem, goal, *model.flight));
         places_.push_back({visit, std::move(goal), bounds_.back()->within_goal(start), std::nullopt});
     }
     const std::size_t outside = estimates_.outside();
@@ -167,13 +165,13 @@ bool LegTable::is_known(std::size_t from, std::size_t to) const {
     return !is_leg(from, to) || leg(from, to).is_known;
 }
 
-bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget, SearchRecord& work) {
+SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget) {
     LegState& state = leg(from, to);
     const Course* const before = from == estimates_.outside() ? &start_
                                  : places_[from].hover        ? &*places_[from].hover
                                                               : nullptr;
     if (before == nullptr || state.failures >= most_failures) {
-        return false;
+        return {};
     }
     Place& place = places_[to];
     Problem part = problem_to(problem_, place.goal);
@@ -189,23 +187,19 @@ bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget,
     options.keep_tree = false;
     options.stop_at_first_solution = false;
     options.on_plan = nullptr;
-    Solution found;
-    search_(part, options, *before, found);
+    const SearchResult result = search_goal(part, part, model_, *before, {}, options);
+    const Found& found = result.found;
     if (found.status != Status::solved) {
-        add_work(work, found.planning);
         if (std::isfinite(state.flown.cost)) {  // there is a flight of a pass before
             state.is_known = true;
             estimates_.leg(from, to) = state.flown;
-            return true;
-        }
-        if (!options_.stop.stop_requested() && ++state.failures == most_failures) {
+        } else if (!options_.stop.stop_requested() && ++state.failures == most_failures) {
             estimates_.leg(from, to) = {};
         }
-        return false;
+        return result.record;
     }
-    add_work(work, found.planning);
     const bool plans_flights = problem_.planner.variant != Variant::mp_arm;
-    Course hover = advanced(*before, place.goal, *found.plan, found.cost, model_, map_, plans_flights);
+    Course hover = advanced(*before, place.goal, *found.plan, found.cost, model_, plans_flights);
     LegCost cost{found.cost, hover.vehicle.plant.energy_j - before->vehicle.plant.energy_j};
     if (found.execution) {
         cost = {cost_of(*found.execution, problem_.planner.objective), found.execution->energy_j};
@@ -228,7 +222,7 @@ bool LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget,
             bound_legs_from(to);
         }
     }
-    return true;
+    return result.record;
 }
 
 void LegTable::give_up(std::size_t from, std::size_t to) {

@@ -2,31 +2,26 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "downwash/base/export.hpp"
-#include "downwash/planner/goal_sequence.hpp"
+#include "downwash/planner/course.hpp"
 #include "downwash/planner/order_search.hpp"
 #include "downwash/planner/search_budget.hpp"
+#include "downwash/planner/solve_options.hpp"
 #include "downwash/problems/visit_order.hpp"
 
 namespace downwash::planning {
-
-/// Searches for a way in the nominal world. Like PartSearch, with a course that is nothing but a hovering vehicle.
-using LegSearch = std::function<void(const Problem& leg, const SolveOptions&, const Course& before, Solution&)>;
 
 /// What the ways between the start, the targets with their alternatives, and the place to return to cost. A leg is
 /// flown by a short search from the vehicle that hovers where the first leg to its place ended. Before it is flown its
 /// cost is a lower bound: that of straight motion in free air to the goal region, and the hold there.
 class DOWNWASH_EXPORT LegTable {
  public:
-    /// @param problem with targets   @param map of the planner's own model; nullptr for none
-    /// @param options for threads and stop   @pre all outlive it
-    LegTable(const Problem& problem, const FlightModel& model, const AeroMap* map, const SolveOptions& options,
-             LegSearch search);
+    /// @param problem with targets   @param options for threads and stop   @pre all outlive it
+    LegTable(const Problem& problem, const PlannerModel& model, const SolveOptions& options);
     ~LegTable();
     LegTable(const LegTable&) = delete;
     LegTable& operator=(const LegTable&) = delete;
@@ -46,11 +41,11 @@ class DOWNWASH_EXPORT LegTable {
     /// Legs that were flown.
     [[nodiscard]] std::uint64_t legs_flown() const noexcept { return legs_flown_; }
 
-    /// Searches a leg that is not flown yet, if a leg to its beginning is. What is not found in two searches is
-    /// infinite from then on.
+    /// Searches a leg that is not flown yet in the nominal world, if a leg to its beginning is. What is not found in
+    /// two searches is infinite from then on.
     /// @param budget of the search, doubled for each one that failed before
-    /// @param work to which that of the search is added   @return whether there is a flight
-    bool fly(std::size_t from, std::size_t to, const SearchBudget& budget, SearchRecord& work);
+    /// @return the work of the search; whether there is a flight, is_known() tells
+    SearchRecord fly(std::size_t from, std::size_t to, const SearchBudget& budget);
 
     /// A flight along this leg was tried in vain from where others ended.
     void give_up(std::size_t from, std::size_t to);
@@ -85,10 +80,8 @@ class DOWNWASH_EXPORT LegTable {
     [[nodiscard]] LegCosts costs_or(const std::optional<LegCost>& other) const;
 
     const Problem& problem_;
-    const FlightModel& model_;
-    const AeroMap* map_;
+    const PlannerModel& model_;
     const SolveOptions& options_;
-    LegSearch search_;
     std::vector<std::unique_ptr<Bounds>> bounds_;  ///< of the ways to each place
     std::vector<Place> places_;                    ///< the last one is the place to return to, if there is one
     Course start_;

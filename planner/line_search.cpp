@@ -8,10 +8,10 @@
 
 namespace downwash::planning {
 
-void search_lines(const Problem& problem, const FlightModel& model, const SolveOptions& options, Solution& solution) {
+SearchResult search_lines(const Problem& problem, const FlightModel& model, const SolveOptions& options) {
     const SearchTask task(problem, model, nullptr);
     Random random(problem.planner.seed);
-    SearchClock search(problem, options, solution);
+    SearchClock search(problem.planner, options);
     GeometricHooks hooks;
     hooks.keep_tree = options.keep_tree;
     hooks.is_over = [&](const GeometricProgress& progress) {
@@ -25,8 +25,9 @@ void search_lines(const Problem& problem, const FlightModel& model, const SolveO
         search.improved(now_s, cost, iteration, {});
     };
     GeometricResult result = plan_geometrically(task, random, hooks);
-    solution.tree = std::move(result.tree);
-    SearchRecord& record = solution.planning;
+    Found found;
+    found.tree = std::move(result.tree);
+    SearchRecord record = search.record;
     record.wall_s = search.seconds();
     record.iterations = result.iterations;
     record.states_checked = result.counts.states;
@@ -35,20 +36,21 @@ void search_lines(const Problem& problem, const FlightModel& model, const SolveO
     record.rejected["bounds"] = result.counts.rejected_bounds;
     record.rejected["arm_limits"] = result.counts.rejected_arm_limits;
     if (result.status != Status::solved) {
-        record.nearest_approach_m = result.nearest_approach_m;
+        found.nearest_approach_m = result.nearest_approach_m;
     }
     if (result.plan && result.plan->reference.back().tick > max_plan_ticks) {
         record.rejected["too_long"] = 1;
         record.improvements.clear();
         record.first_solution_wall_s.reset();
-        return;
+        return {std::move(found), std::move(record)};
     }
-    solution.status = result.status;
-    solution.plan = std::move(result.plan);
-    solution.cost = result.cost;
-    if (options.on_plan && solution.status == Status::solved) {
-        options.on_plan({*solution.plan, solution.cost, {}});
+    found.status = result.status;
+    found.plan = std::move(result.plan);
+    found.cost = result.cost;
+    if (options.on_plan && found.status == Status::solved) {
+        options.on_plan({*found.plan, found.cost, {}});
     }
+    return {std::move(found), std::move(record)};
 }
 
 }  // namespace downwash::planning

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "downwash/planner/search_clock.hpp"
+#include "downwash/planner/stopwatch.hpp"
 
 namespace downwash::planning {
 
@@ -12,33 +12,36 @@ bool is_order(const PlaceOrder& order) {
     return std::isfinite(order.cost) && !order.places.empty();
 }
 
-void OrderComparison::compare(SearchBudget budget, SearchRecord& work) {
+SearchRecord OrderComparison::compare(const SearchBudget& budget) {
     const auto targets = static_cast<double>(table_.estimates().targets());
     const double legs = std::min(targets * (targets + 1), 6 * (targets + 1));
     SearchBudget slice = budget.part(1 / legs);
+    Work work{budget, {}};
     for (;;) {
-        SearchBudget before = budget;
-        if (!is_converged(slice, budget, work)) {
-            return;
+        const SearchBudget before = work.left;
+        if (!converges(slice, work)) {
+            return work.done;
         }
         // The next pass takes about twice as much.
         constexpr double most = 0.33;
-        if (before.share_between(budget) > most || before.share_between(budget) <= 0) {
-            return;
+        const double share = before.share_between(work.left);
+        if (share > most || share <= 0) {
+            return work.done;
         }
         slice = slice.part(2);
         table_.begin_pass();
     }
 }
 
+/// Flies the legs of one order after the other, until one consists of flown legs that is the best.
 /// @return false if the budget was used up before
-bool OrderComparison::is_converged(const SearchBudget& slice, SearchBudget& budget, SearchRecord& work) {
+bool OrderComparison::converges(const SearchBudget& slice, Work& work) {
     bool is_nearest_first = true;
     std::vector<std::size_t> hint;
-    while (!is_stopped_() && !budget.is_used_up()) {
+    while (!is_over(work)) {
         const PlaceOrder order = is_nearest_first ? nearest_first(limited(table_.estimates()))
                                                   : best_order(limited(table_.estimates()), hint);
-        const bool is_flown = !is_order(order) || !fly_missing_legs(order, slice, budget, work);
+        const bool is_flown = !is_order(order) || !fly_missing_legs(order, slice, work);
         if (is_flown && !std::exchange(is_nearest_first, false)) {
             return true;
         }
@@ -47,26 +50,25 @@ bool OrderComparison::is_converged(const SearchBudget& slice, SearchBudget& budg
     return false;
 }
 
-/// @return false if none was missing. One to which no flight is found ends it: another order may be better then
-bool OrderComparison::fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, SearchBudget& budget,
-                                       SearchRecord& work) {
+/// Flies the legs of an order that are not flown yet. One to which no flight is found ends it: another order may be
+/// better then. @return false if none was missing
+bool OrderComparison::fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, Work& work) {
     bool was_missing = false;
     std::size_t from = table_.estimates().outside();
     std::vector<std::size_t> stations = order.places;
     stations.push_back(from);
     for (const std::size_t to : stations) {
-        if (is_stopped_() || budget.is_used_up()) {
+        if (is_over(work)) {
             break;
         }
         if (!table_.is_known(from, to)) {
             was_missing = true;
             const Stopwatch clock;
-            SearchRecord spent;
-            const bool is_flown = table_.fly(from, to, slice.at_most(budget), spent);
-            add_work(work, spent);
+            SearchRecord spent = table_.fly(from, to, slice.at_most(work.left));
+            add_work(work.done, spent);
             spent.wall_s = clock.seconds();
-            budget.spend(spent);
-            if (!is_flown) {
+            work.left.spend(spent);
+            if (!table_.is_known(from, to)) {
                 break;
             }
         }

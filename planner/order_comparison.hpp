@@ -16,8 +16,8 @@ class DOWNWASH_EXPORT OrderComparison {
     /// Flies the legs of nearest_first() by flown costs, so that no order is chosen that costs more; then those of the
     /// order that is the best by what is known, again and again, until it consists of flown legs. As long as the budget
     /// allows it does so anew, each time with twice as much for a leg, of which the cheapest flight counts.
-    /// @param work to which that of the searches is added
-    void compare(SearchBudget budget, SearchRecord& work);
+    /// @return the work of all searches
+    [[nodiscard]] SearchRecord compare(const SearchBudget& budget);
 
     /// The best order of flown legs or, where others may visit more, of those.
     [[nodiscard]] PlaceOrder chosen() const;
@@ -33,9 +33,14 @@ class DOWNWASH_EXPORT OrderComparison {
         costs.energy_budget_j = energy_limit_j;
         return costs;
     }
-    [[nodiscard]] bool is_converged(const SearchBudget& slice, SearchBudget& budget, SearchRecord& work);
-    [[nodiscard]] bool fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, SearchBudget& budget,
-                                        SearchRecord& work);
+    /// What a comparison has left, and what it did.
+    struct Work {
+        SearchBudget left;
+        SearchRecord done;
+    };
+    [[nodiscard]] bool is_over(const Work& work) const { return is_stopped_() || work.left.is_used_up(); }
+    [[nodiscard]] bool converges(const SearchBudget& slice, Work& work);
+    [[nodiscard]] bool fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, Work& work);
 
     LegTable& table_;
     StopCondition is_stopped_;

@@ -8,9 +8,9 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/stop_condition.hpp"
 #include "downwash/planner/braking.hpp"
-#include "downwash/planner/flight_search.hpp"
-#include "downwash/planner/search_clock.hpp"
+#include "downwash/planner/direct_flight.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/planner/stopwatch.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/planner/worlds.hpp"
 #include "downwash/search/search_space.hpp"
@@ -79,28 +79,6 @@ std::string_view name_of(Advice advice) {
             break;
     }
     return "none";
-}
-
-ReferencePoint reference_of(const Plan& plan, std::int64_t tick) {
-    const auto next = std::upper_bound(plan.reference.begin(), plan.reference.end(), tick,
-                                       [](std::int64_t at, const ReferenceKnot& knot) { return at < knot.tick; });
-    if (next == plan.reference.end() || next == plan.reference.begin()) {
-        return next == plan.reference.begin() ? plan.reference.front().point : plan.reference.back().point;
-    }
-    const ReferenceKnot& from = *(next - 1);
-    return ReferenceSegment(from.point, next->point, next->tick - from.tick, plan.tick_s).at_tick(tick - from.tick);
-}
-
-Plan rest_of_plan(const Plan& plan, std::int64_t tick, const ReferencePoint& reference) {
-    Plan rest;
-    rest.tick_s = plan.tick_s;
-    rest.reference.push_back({0, reference});
-    for (const ReferenceKnot& knot : plan.reference) {
-        if (knot.tick > tick) {
-            rest.reference.push_back({knot.tick - tick, knot.point});
-        }
-    }
-    return rest;
 }
 
 /// One call of replan().
@@ -285,12 +263,11 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
     }
     problem_.start = start;
     const ReferencePoint reference = planning::reference_at(start);
-    Plan left;
+    Plan left{{{}}, model_->tick().tick_s};
     if (plan_ && !change.goal) {
-        left = rest_of_plan(*plan_, tick, reference);
-    } else {
-        left = Plan{{{0, reference}}, model_->tick().tick_s};
+        left = plan_->rest_after(tick);
     }
+    left.reference.front().point = reference;
 
     planning::Braking braking(
         problem_, model_, [this](const Bounds& places) { return map_around(places); }, worlds(), options_.threads);
@@ -365,18 +342,12 @@ void Planner::search(Call& call, const Plan& left) {
 
 bool fly_along(const FlightModel& model, const AeroMap* map, const Plan& plan, std::int64_t ticks, FlightState& vehicle,
                const FlightWorld& in) {
-    ReferenceKnot from = plan.reference.front();
-    for (std::size_t next = 1; from.tick < ticks; ++next) {
-        ReferenceKnot to = next < plan.reference.size() ? plan.reference[next] : ReferenceKnot{ticks, from.point};
-        if (to.tick > ticks) {
-            to = {ticks, reference_of(plan, ticks)};
-        }
-        const ReferenceSegment segment(from.point, to.point, to.tick - from.tick, plan.tick_s);
-        const FlightWorld world{in.world, in.first_tick + from.tick};
-        if (fly(model, map, rules_of_execution(), segment, vehicle, world).rejection != Rejection::none) {
+    std::int64_t tick = in.first_tick;
+    for (const ReferenceSegment& segment : plan.beginning(ticks).segments()) {
+        if (fly(model, map, rules_of_execution(), segment, vehicle, {in.world, tick}).rejection != Rejection::none) {
             return false;
         }
-        from = to;
+        tick += segment.ticks();
     }
     return true;
 }
@@ -384,7 +355,7 @@ bool fly_along(const FlightModel& model, const AeroMap* map, const Plan& plan, s
 Start Planner::predicted(const Start& start, const Plan& plan, std::int64_t ticks) const {
     FlightState state = start_state(*model_, start);
     static_cast<void>(fly_along(*model_, map_.get(), plan, ticks, state));
-    return start_of(*model_, state, reference_of(plan, ticks));
+    return start_of(*model_, state, plan.at(ticks));
 }
 
 }  // namespace downwash

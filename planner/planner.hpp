@@ -142,11 +142,4 @@ class DOWNWASH_EXPORT Planner {
 DOWNWASH_EXPORT bool fly_along(const FlightModel& model, const AeroMap* map, const Plan& plan, std::int64_t ticks,
                                FlightState& vehicle, const FlightWorld& in = {});
 
-/// What is left of a plan from a tick on, as a plan of its own.
-/// @param reference that is followed at that tick
-[[nodiscard]] DOWNWASH_EXPORT Plan rest_of_plan(const Plan& plan, std::int64_t tick, const ReferencePoint& reference);
-
-/// The point of a plan's reference at a tick; after its last knot that one.
-[[nodiscard]] DOWNWASH_EXPORT ReferencePoint reference_of(const Plan& plan, std::int64_t tick);
-
 }  // namespace downwash

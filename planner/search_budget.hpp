@@ -117,4 +117,15 @@ inline void add_work(SearchRecord& sum, const SearchRecord& part) {
     }
 }
 
+/// Notes when a part of a search found its first plans, unless one before did.
+/// @param begun_at_s wall time of the whole at which the part began
+inline void note_first_plans(SearchRecord& whole, const SearchRecord& part, double begun_at_s) {
+    if (!whole.first_solution_wall_s && part.first_solution_wall_s) {
+        whole.first_solution_wall_s = begun_at_s + *part.first_solution_wall_s;
+    }
+    if (!whole.first_certified_wall_s && part.first_certified_wall_s) {
+        whole.first_certified_wall_s = begun_at_s + *part.first_certified_wall_s;
+    }
+}
+
 }  // namespace downwash::planning

@@ -1,36 +1,27 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <thread>
 
-#include "downwash/planner/solution.hpp"
 #include "downwash/planner/solve_options.hpp"
+#include "downwash/planner/stopwatch.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/search/search_record.hpp"
 
 namespace downwash::planning {
 
-/// Wall time since it was made.
-class Stopwatch {
- public:
-    [[nodiscard]] double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-    }
-
- private:
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-};
-
-/// What every search has in common: its limits, its clock, and whom it tells.
+/// What every search has in common: its limit of time, its record, and whom it tells.
 class SearchClock {
  public:
-    SearchClock(const Problem& problem, const SolveOptions& options, Solution& solution)
-        : settings_(problem.planner), options_(options), solution_(solution) {
-        if (settings_.time_limit_s || !settings_.max_iterations) {
-            limit_s_ = settings_.time_limit_s.value_or(default_time_limit_s);
+    SearchClock(const PlannerSettings& settings, const SolveOptions& options) : options_(options) {
+        if (settings.time_limit_s || !settings.max_iterations) {
+            limit_s_ = settings.time_limit_s.value_or(default_time_limit_s);
         }
     }
+
+    SearchRecord record;  ///< how the search goes
 
     /// Since construction [s].
     [[nodiscard]] double seconds() const { return clock_.seconds(); }
@@ -42,19 +33,19 @@ class SearchClock {
             report();
         }
         return options_.stop.stop_requested() || (limit_s_ && clock_.seconds() >= *limit_s_) ||
-               (options_.stop_at_first_solution && !solution_.planning.improvements.empty());
+               (options_.stop_at_first_solution && !record.improvements.empty());
     }
 
     /// The planner's own model has accepted a plan.
     void found_first(double at_s) {
-        if (!solution_.planning.first_solution_wall_s) {
-            solution_.planning.first_solution_wall_s = at_s;
+        if (!record.first_solution_wall_s) {
+            record.first_solution_wall_s = at_s;
         }
     }
 
     /// A better plan counts.
     void improved(double at_s, double cost, std::uint64_t iteration, std::optional<double> flown_cost) {
-        solution_.planning.improvements.push_back({at_s, iteration, cost, flown_cost});
+        record.improvements.push_back({at_s, iteration, cost, flown_cost});
     }
 
     /// A plan is flown in worlds: how many so far, and in how many it failed. From any thread.
@@ -83,16 +74,14 @@ class SearchClock {
             return;
         }
         progress_.wall_s = now_s;
-        const auto& improvements = solution_.planning.improvements;
+        const auto& improvements = record.improvements;
         progress_.best_cost = improvements.empty() ? std::nullopt : std::optional(improvements.back().cost);
         progress_.worlds = is_certifying_ ? std::optional(certified_in_.load()) : std::nullopt;
         progress_.failures = failed_in_;
         options_.on_progress(progress_);
     }
 
-    const PlannerSettings& settings_;
     const SolveOptions& options_;
-    Solution& solution_;
     Stopwatch clock_;
     std::optional<double> limit_s_;
     Progress progress_;  ///< as reported last

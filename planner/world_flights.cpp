@@ -38,16 +38,8 @@ class AskingScope {
 
 }  // namespace
 
-ReferenceSegment segment_to(const Plan& plan, std::size_t knot) {
-    const ReferenceKnot& a = plan.reference[knot - 1];
-    const ReferenceKnot& b = plan.reference[knot];
-    return {a.point, b.point, b.tick - a.tick, plan.tick_s};
-}
-
-Plan with_hover(Plan plan, const Goal& goal, const FlightModel& model) {
-    plan.reference.push_back(plan.reference.back());
-    plan.reference.back().tick += hold_ticks(goal, model, plan.reference.back().point);
-    return plan;
+Plan with_hover(const Plan& plan, const Goal& goal, const FlightModel& model) {
+    return plan.held_for(hold_ticks(goal, model, plan.reference.back().point));
 }
 
 double min_clearance_m(const FlightJob& job) {
@@ -112,7 +104,7 @@ void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::
     const std::int64_t judged_ticks = goal ? std::llround(goal_settling_s / model_->tick().tick_s) : 0;
     std::vector<FlightLeg> legs;
     for (std::size_t i = first + 1; i <= last; ++i) {
-        legs.push_back({segment_to(plan, i)});
+        legs.push_back({plan.segment_to(i)});
     }
     std::vector<FlightJob> flying;
     std::vector<FlightJob*> owners;

@@ -71,11 +71,8 @@ class DOWNWASH_EXPORT WorldFlights {
     std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
 };
 
-/// The segment of a plan that ends at a knot other than the first.
-[[nodiscard]] DOWNWASH_EXPORT ReferenceSegment segment_to(const Plan& plan, std::size_t knot);
-
-/// A plan with the hover at its last goal as its last two knots.
-[[nodiscard]] DOWNWASH_EXPORT Plan with_hover(Plan plan, const Goal& goal, const FlightModel& model);
+/// A plan and the hover at its last goal, which ends at a knot of its own.
+[[nodiscard]] DOWNWASH_EXPORT Plan with_hover(const Plan& plan, const Goal& goal, const FlightModel& model);
 
 /// Of a job whose rules find it, to min_clearance_error_m; infinite before its first leg.
 [[nodiscard]] DOWNWASH_EXPORT double min_clearance_m(const FlightJob& job);

@@ -5,7 +5,8 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/planner/certificate.hpp"
-#include "downwash/planner/goal_sequence.hpp"
+#include "downwash/planner/course.hpp"
+#include "downwash/planner/solve_options.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/search/fleet.hpp"
 
@@ -22,8 +23,7 @@ using WorldCounter = std::function<void(std::uint64_t worlds, std::uint64_t fail
 /// The worlds of a search and the certificates of its plans.
 class DOWNWASH_EXPORT ProblemWorlds {
  public:
-    /// @param map of the planner's own model; nullptr for none   @param options for threads, cache of maps, stop
-    /// @throws WorkStopped when a stop is requested before the maps are built
+    /// @param map of the planner's own model; nullptr for none   @param options for threads and recorder
     /// @pre problem outlives it, and has an uncertainty
     ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
                   const SolveOptions& options);

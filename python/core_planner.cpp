@@ -195,7 +195,7 @@ class CorePlanner {
     }
 
     [[nodiscard]] ReferenceNumbers reference_of(const Points& knots, std::int64_t tick) const {
-        return numbers_of(downwash::reference_of(plan_of(knots, tick_s()), tick_within(tick)));
+        return numbers_of(plan_of(knots, tick_s()).at(tick_within(tick)));
     }
 
     void adopt(const Points& knots) {

@@ -109,16 +109,13 @@ Ring planned_way(const RunRecord& run) {
         return points;
     }
     const auto add = [&points](const ReferencePoint& at) { points.push_back({at.position[0], at.position[1]}); };
-    const auto& knots = run.plan->reference;
     constexpr std::int64_t pieces = 50;  // of a segment
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-        const ReferenceSegment segment(knots[i].point, knots[i + 1].point, knots[i + 1].tick - knots[i].tick,
-                                       run.plan->tick_s);
+    for (const ReferenceSegment& segment : run.plan->segments()) {
         for (std::int64_t piece = 0; piece < pieces; ++piece) {
             add(segment.at_tick(segment.ticks() * piece / pieces));
         }
     }
-    add(knots.back().point);
+    add(run.plan->reference.back().point);
     return points;
 }
 

@@ -65,7 +65,7 @@ void read_plan(JsonReader& reader, const Node& root, const Problem& problem, Sol
     solution.plan = std::move(text.plan);
 }
 
-void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
+void read_planning(JsonReader& reader, const Node& root, Solution& solution) {
     const auto planning = JsonReader::member(root, "planning");
     if (!planning || planning->json->is_null()) {
         return;
@@ -74,9 +74,10 @@ void read_planning(JsonReader& reader, const Node& root, SearchRecord& record) {
         reader.report(*planning, "expected a group of keys");
         return;
     }
+    SearchRecord& record = solution.planning;
     record.wall_s = reader.amount(*planning, "wall_s", 0);
     record.map_wall_s = reader.amount(*planning, "map_wall_s", 0);
-    record.flight_wall_s = reader.amount(*planning, "flight_wall_s", 0);
+    solution.flight_wall_s = reader.amount(*planning, "flight_wall_s", 0);
     const double first_s = reader.amount(*planning, "first_solution_wall_s", -1);
     record.first_solution_wall_s = first_s < 0 ? std::nullopt : std::optional(first_s);
     const double certified_s = reader.amount(*planning, "first_certified_wall_s", -1);
@@ -210,7 +211,7 @@ Solution read_solution(const std::string& path, const Problem& problem) {
     Solution solution = blank_solution(problem);
     problems::read_document(path, [&](JsonReader& reader, const Node& root) {
         read_head(reader, root, solution);
-        read_planning(reader, root, solution.planning);
+        read_planning(reader, root, solution);
         read_certificate(reader, root, solution.certificate);
         read_plan(reader, root, problem, solution);
         read_stops(reader, root, solution.plan->tick_s, solution.stops);

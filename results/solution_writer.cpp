@@ -87,7 +87,7 @@ Json order_json(const VisitOrder& order) {
             {"cost_of_legs", number(order.cost_of_legs)}};
 }
 
-Json planning_json(const SearchRecord& record) {
+Json planning_json(const Found& found, const SearchRecord& record) {
     Json improvements = Json::array();
     for (const Improvement& improvement : record.improvements) {
         improvements.push_back({{"wall_s", number(improvement.wall_s)},
@@ -97,7 +97,7 @@ Json planning_json(const SearchRecord& record) {
     }
     return {{"wall_s", number(record.wall_s)},
             {"map_wall_s", number(record.map_wall_s)},
-            {"flight_wall_s", number(record.flight_wall_s)},
+            {"flight_wall_s", number(found.flight_wall_s)},
             {"first_solution_wall_s", number(record.first_solution_wall_s)},
             {"first_certified_wall_s", number(record.first_certified_wall_s)},
             {"iterations", record.iterations},
@@ -106,9 +106,9 @@ Json planning_json(const SearchRecord& record) {
             {"states_checked", record.states_checked},
             {"improvements", std::move(improvements)},
             {"rejected", record.rejected},
-            {"nearest_approach_m", number(record.nearest_approach_m)},
-            {"obstruction", obstruction_json(record.obstruction)},
-            {"goal", record.goal ? Json(*record.goal) : Json()}};
+            {"nearest_approach_m", number(found.nearest_approach_m)},
+            {"obstruction", obstruction_json(found.obstruction)},
+            {"goal", found.missed_goal ? Json(*found.missed_goal) : Json()}};
 }
 
 Json knot_json(const ReferenceKnot& knot, const Plan& plan) {
@@ -228,7 +228,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"version", version()},
         {"threads", solution.threads},
         {"cost", solution.plan ? number(solution.cost) : Json()},
-        {"planning", planning_json(solution.planning)},
+        {"planning", planning_json(solution, solution.planning)},
         {"certificate", certificate_json(solution.certificate)},
         {"plan", plan_json(solution.plan)},
         {"stops", stops_json(solution.stops, solution.plan ? solution.plan->tick_s : 0)},

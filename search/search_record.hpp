@@ -41,7 +41,6 @@ struct SearchRecord {
     double wall_s = 0;                             ///< of the search, direct flights of better plans included
     double setup_wall_s = 0;                       ///< before it: checks of the problem, scene and aero map
     double map_wall_s = 0;                         ///< of that, spent on the aero map
-    double flight_wall_s = 0;                      ///< spent on the direct flight of the reported plan
     std::optional<double> first_solution_wall_s;   ///< first plan that the planner's own model accepted
     std::optional<double> first_certified_wall_s;  ///< first plan that got its certificate
     std::uint64_t iterations = 0;
@@ -50,11 +49,6 @@ struct SearchRecord {
     std::uint64_t states_checked = 0;  ///< collision queries of single states
     std::vector<Improvement> improvements;
     std::map<std::string, std::uint64_t> rejected;  ///< by cause: collision, flyable_area, saturation, ...
-    /// Of a search that found no plan: how near to the goal region the vehicle was brought [m], and, of a search by
-    /// flights, what stopped it there.
-    std::optional<double> nearest_approach_m;
-    std::optional<Obstruction> obstruction;
-    std::optional<std::size_t> goal;  ///< of several goals in turn the one that they are about, from 1
 };
 
 /// A node of the tree that a search has grown.

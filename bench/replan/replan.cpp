@@ -66,8 +66,8 @@ Change drawn_change(const Problem& problem, const Plan& plan, std::int64_t tick,
     const int kind = draw.below(4);
     if (kind < 2) {
         const auto last = plan.reference.back().tick;
-        const ReferencePoint ahead = reference_of(
-            plan, tick + static_cast<std::int64_t>(draw.uniform(0.2, 1) * static_cast<double>(last - tick)));
+        const ReferencePoint ahead =
+            plan.at(tick + static_cast<std::int64_t>(draw.uniform(0.2, 1) * static_cast<double>(last - tick)));
         const Obstacle box = box_at(ahead.position[0] + draw.uniform(-1.5, 1.5),
                                     ahead.position[1] + draw.uniform(-1.5, 1.5), draw.uniform(0.2, 0.8));
         return {"of a new box", {{box}, {}, {}}, {{}, {box.name}, {}}};
@@ -225,7 +225,7 @@ void report_flights(const Given& given, const Problem& problem, Planner& planner
                                                                       given.seed + 77, static_cast<std::uint64_t>(i)));
         const auto tick = static_cast<std::int64_t>(draw.uniform(0, static_cast<double>(plan.reference.back().tick)));
         planner.adopt(plan);
-        const ReferencePoint reference = reference_of(plan, tick);
+        const ReferencePoint reference = plan.at(tick);
         const double speed = std::hypot(reference.velocity[0], reference.velocity[1]);
         const double room_m =
             has_room ? 1.6 + speed * speed / (2 * problem.motion.max_acceleration_m_s2) * 1.5 : draw.uniform(0.9, 1.2);
@@ -256,7 +256,7 @@ void report_flights(const Given& given, const Problem& problem, Planner& planner
         ++i;
         planner.replan(here, tick, {{}, {box.name}, {}}, options);
         if (is_lost && answer.advice != Advice::none) {
-            const Answer left{Advice::keep, rest_of_plan(plan, tick, reference), 0, 0, {}};
+            const Answer left{Advice::keep, plan.rest_after(tick), 0, 0, {}};
             const Execution alone = flown(planner, *state, left, world, tick);
             count.surprises.push_back(fmt::format(
                 "flight {}, answer {}: {} after {:.1f} s, {:.2f} m/s and {:.2f} m before the box; without the box the "

@@ -51,7 +51,7 @@ class Commands {
 
     [[nodiscard]] ReferencePoint at(std::int64_t tick) const {
         const auto& [from, plan] = *std::prev(plans_.upper_bound(tick));
-        return reference_of(plan, tick - from);
+        return plan.at(tick - from);
     }
 
     /// Takes a reference in place of all that begin no earlier. @return why not; empty if it is taken

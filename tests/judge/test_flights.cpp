@@ -97,7 +97,7 @@ TEST_CASE("The judge flies on from the middle of a flight as the planner does, w
             problem.start = start_of(*model, vehicle, there);
             problem.goal = Goal{};
             problem.goal.kind = ConfigurationGoal{end.position[0], end.position[1], {}};
-            const Plan rest = rest_of_plan(whole, 600, there);
+            const Plan rest = whole.rest_after(600);
             const judge::JudgedFlight mine = judge::PlanJudge(problem).fly(rest, {});
             const auto theirs = executed(problem, rest, true, std::nullopt);
             REQUIRE(theirs);

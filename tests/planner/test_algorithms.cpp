@@ -109,15 +109,15 @@ TEST_CASE("no algorithm calls a walled problem solved") {
         CHECK(solution.planning.improvements.empty());
         CHECK_FALSE(solution.planning.first_solution_wall_s);
         CHECK(solution.planning.iterations <= 200);
-        REQUIRE(solution.planning.nearest_approach_m.has_value());
-        CHECK(*solution.planning.nearest_approach_m > 0);
+        REQUIRE(solution.nearest_approach_m.has_value());
+        CHECK(*solution.nearest_approach_m > 0);
         // The tree of flights tries ways to the goal all along; OMPL's planners close a flight only from nearby.
         const bool tries_ways_to_goal = variant != Variant::mp_arm && algorithm.name == "rrt-star";
-        REQUIRE(solution.planning.obstruction.has_value() == tries_ways_to_goal);
+        REQUIRE(solution.obstruction.has_value() == tries_ways_to_goal);
         if (tries_ways_to_goal) {
-            CHECK(solution.planning.obstruction->cause == "collision");
-            CHECK(solution.planning.obstruction->at[plane::x] < 0);  // on this side of the wall
-            CHECK(solution.planning.obstruction->goal_distance_m > 1);
+            CHECK(solution.obstruction->cause == "collision");
+            CHECK(solution.obstruction->at[plane::x] < 0);  // on this side of the wall
+            CHECK(solution.obstruction->goal_distance_m > 1);
         }
         CHECK((solution.status == Status::approximate) == solution.plan.has_value());
         if (solution.plan) {

@@ -5,6 +5,7 @@
 #include "../support/test_problem.hpp"
 #include "downwash/planner/braking.hpp"
 #include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_model.hpp"
 
@@ -32,13 +33,11 @@ struct StricterStops {
     std::optional<planning::StopFinder> finder;
 };
 
-Solution searched(const Problem& problem, planning::StopFinder* stops, const SolveOptions& options) {
+Found searched(const Problem& problem, planning::StopFinder* stop_finder, const SolveOptions& options) {
     const auto model = make_flight_model(problem);
-    const auto map = model->make_map(problem.bounds);
-    Solution solution;
-    planning::search_flights(problem, problem, *model, map.get(), planning::Course::from_start(problem, *model),
-                             {nullptr, stops}, options, solution);
-    return solution;
+    return planning::search_flights(problem, problem, {model, model->make_map(problem.bounds)},
+                                    planning::Course::from_start(problem, *model), {nullptr, stop_finder}, options)
+        .found;
 }
 
 }  // namespace
@@ -63,15 +62,15 @@ TEST_CASE("a plan has a stop at each knot and every half second, and no stop whe
     const SafeStops fewer = stricter.finder->along(*solution.plan);
     CHECK(fewer.share_without > 0.05);
     CHECK(fewer.share_without < 1);
-    CHECK(planning::stops_less(fewer, stops));
-    CHECK_FALSE(planning::stops_less(stops, fewer));
-    CHECK_FALSE(planning::stops_less(stops, stops));
+    CHECK(is_clearly_worse(fewer, stops));
+    CHECK_FALSE(is_clearly_worse(stops, fewer));
+    CHECK_FALSE(is_clearly_worse(stops, stops));
 }
 
 TEST_CASE("a cheaper plan that can be left for a hover for less of its time does not replace one that can for more") {
     const Problem problem = long_flight();
     StricterStops stricter(problem);
-    const Solution free = searched(problem, nullptr, {});
+    const Found free = searched(problem, nullptr, {});
     REQUIRE(free.status == Status::solved);
     CHECK_FALSE(free.stops);
     std::vector<double> shares;
@@ -79,7 +78,7 @@ TEST_CASE("a cheaper plan that can be left for a hover for less of its time does
     options.on_plan = [&](const FoundPlan& found) {
         shares.push_back(stricter.finder->along(found.plan).share_without);
     };
-    const Solution preferring = searched(problem, &*stricter.finder, options);
+    const Found preferring = searched(problem, &*stricter.finder, options);
     REQUIRE(preferring.status == Status::solved);
     REQUIRE(preferring.stops);
     CHECK(preferring.stops->share_without == shares.back());
@@ -95,31 +94,31 @@ TEST_CASE("of two ways through several goals the one that can be left for more o
     problem.stops = {test::configuration_goal(0, 2.5)};
     problem.stops[0].hold_s = 1;
     problem.planner.max_iterations = 400;
-    const auto model = make_flight_model(problem);
-    const auto map = model->make_map(problem.bounds);
+    const auto flight_model = make_flight_model(problem);
+    const planning::PlannerModel model{flight_model, flight_model->make_map(problem.bounds)};
     const bool is_first_better = GENERATE(true, false);
     CAPTURE(is_first_better);
     double first_cost = 0;
     int ways = 0;
-    Solution solution;
-    std::uint64_t attempts = 0;
-    planning::solve_in_turn(
-        problem, *model, map.get(), {},
-        [&](const Problem& part, const SolveOptions& how, const planning::Course& before, Solution& found) {
-            const auto weak = planning::search_flights(part, problem, *model, map.get(), before, {}, how, found);
-            if (before.goals.size() == 1 && found.status == Status::solved) {
-                found.stops.emplace();
-                found.stops->share_without = (ways++ == 0) == is_first_better ? 0.2 : 0.4;
-                if (ways == 1) {
-                    first_cost = before.cost + found.cost;
-                }
+    const SolveOptions options;
+    planning::GoalSequence sequence(problem, model, options, 0, 0);
+    while (const auto part = sequence.next()) {
+        planning::SearchResult result =
+            planning::search_flights(part->problem, problem, model, *part->before, {}, part->options);
+        Found& found = result.found;
+        if (part->before->goals.size() == 1 && found.status == Status::solved) {
+            found.stops.emplace();
+            found.stops->share_without = (ways++ == 0) == is_first_better ? 0.2 : 0.4;
+            if (ways == 1) {
+                first_cost = part->before->cost + found.cost;
             }
-            return weak;
-        },
-        0, attempts, solution);
-    REQUIRE(solution.status == Status::solved);
+        }
+        sequence.add(std::move(result));
+    }
+    const Found found = std::move(sequence).result().found;
+    REQUIRE(found.status == Status::solved);
     REQUIRE(ways > 1);
-    REQUIRE(solution.stops);
-    CHECK(solution.stops->share_without == 0.2);
-    CHECK((solution.cost == first_cost) == is_first_better);
+    REQUIRE(found.stops);
+    CHECK(found.stops->share_without == 0.2);
+    CHECK((found.cost == first_cost) == is_first_better);
 }

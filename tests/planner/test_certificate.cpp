@@ -220,26 +220,22 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
     problem.planner.max_iterations = 300;
     SolveOptions options;
     options.stop_at_first_solution = true;
-    const std::shared_ptr<const FlightModel> model = make_flight_model(problem);
-    const std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
-    planning::ProblemWorlds worlds(problem, model, map, options);
+    const std::shared_ptr<const FlightModel> flight_model = make_flight_model(problem);
+    const planning::PlannerModel model{flight_model, flight_model->make_map(problem.bounds)};
+    planning::ProblemWorlds worlds(problem, model.flight, model.map, options);
     std::vector<std::optional<std::size_t>> named;
-    Solution solution;
-    std::uint64_t attempts = 0;
-    planning::solve_in_turn(
-        problem, *model, map.get(), options,
-        [&](const Problem& part, const SolveOptions& of_part, const planning::Course& before, Solution& found) {
-            // The way to the first goal is good in the nominal world, and it stays so.
-            planning::ProblemWorlds* survived = before.goals.empty() ? nullptr : &worlds;
-            const auto weak =
-                planning::search_flights(part, problem, *model, map.get(), before, {survived}, of_part, found);
-            if (survived != nullptr) {
-                named.push_back(weak);
-            }
-            return weak;
-        },
-        0, attempts, solution);
-    CHECK(solution.status == Status::approximate);
+    planning::GoalSequence sequence(problem, model, options, 0, 0);
+    while (const auto part = sequence.next()) {
+        // The way to the first goal is good in the nominal world, and it stays so.
+        planning::ProblemWorlds* survived = part->before->goals.empty() ? nullptr : &worlds;
+        planning::SearchResult result =
+            planning::search_flights(part->problem, problem, model, *part->before, {survived}, part->options);
+        if (survived != nullptr) {
+            named.push_back(result.weak_goal);
+        }
+        sequence.add(std::move(result));
+    }
+    CHECK(std::move(sequence).result().found.status == Status::approximate);
     REQUIRE_FALSE(named.empty());
     CHECK(named.front() == std::optional<std::size_t>(0));
 }

@@ -64,31 +64,38 @@ enum class PartOutcome { found, too_late, hopeless, first_part_is_weak };
 struct ScriptedTour {
     std::vector<std::size_t> goals;
     std::vector<std::uint64_t> seeds;
-    Solution solution;
+    Found found;
+    SearchRecord record;
 
     explicit ScriptedTour(const std::vector<PartOutcome>& script) {
         Problem problem = tour(Variant::mp_arm);
         problem.aero.enabled = false;
         problem.planner.max_iterations = 1200;
-        const auto model = make_flight_model(problem);
-        const auto search = [&](const Problem& part, const SolveOptions&, const planning::Course& before,
-                                Solution& found) -> std::optional<std::size_t> {
-            const PartOutcome outcome = goals.size() < script.size() ? script[goals.size()] : PartOutcome::found;
-            goals.push_back(before.goals.size());
-            seeds.push_back(part.planner.seed);
-            found.planning.iterations = outcome == PartOutcome::too_late   ? *part.planner.max_iterations
-                                        : outcome == PartOutcome::hopeless ? 0
-                                                                           : 10;
-            const Configuration start = part.start.configuration();
-            found.plan = Plan{{{0, at_rest(start)}, {500, at_rest({start[plane::x] + 1, 2, 0})}}, model->tick().tick_s};
-            found.cost = 1;
-            found.status = outcome == PartOutcome::found ? Status::solved : Status::approximate;
-            return outcome == PartOutcome::first_part_is_weak ? std::optional<std::size_t>(0) : std::nullopt;
-        };
+        const planning::PlannerModel model{make_flight_model(problem), nullptr};
         SolveOptions options;
         options.stop_at_first_solution = true;
-        std::uint64_t attempts = 0;
-        planning::solve_in_turn(problem, *model, nullptr, options, search, 0, attempts, solution);
+        planning::GoalSequence sequence(problem, model, options, 0, 0);
+        while (const auto part = sequence.next()) {
+            const PartOutcome outcome = goals.size() < script.size() ? script[goals.size()] : PartOutcome::found;
+            goals.push_back(part->before->goals.size());
+            seeds.push_back(part->problem.planner.seed);
+            planning::SearchResult result;
+            result.record.iterations = outcome == PartOutcome::too_late   ? *part->problem.planner.max_iterations
+                                       : outcome == PartOutcome::hopeless ? 0
+                                                                          : 10;
+            const Configuration start = part->problem.start.configuration();
+            result.found.plan =
+                Plan{{{0, at_rest(start)}, {500, at_rest({start[plane::x] + 1, 2, 0})}}, model.flight->tick().tick_s};
+            result.found.cost = 1;
+            result.found.status = outcome == PartOutcome::found ? Status::solved : Status::approximate;
+            if (outcome == PartOutcome::first_part_is_weak) {
+                result.weak_goal = 0;
+            }
+            sequence.add(std::move(result));
+        }
+        planning::SearchResult whole = std::move(sequence).result();
+        found = std::move(whole.found);
+        record = std::move(whole.record);
     }
 };
 
@@ -100,23 +107,23 @@ TEST_CASE("a tour goes back to the part that is to blame, which is searched with
     CHECK(tour.goals == std::vector<std::size_t>{0, 1, 2, 0, 1, 2});
     CHECK(tour.seeds[3] != tour.seeds[0]);
     CHECK(tour.seeds[4] != tour.seeds[1]);
-    CHECK(tour.solution.status == Status::solved);
-    CHECK(tour.solution.cost == 3);
-    CHECK(tour.solution.planning.iterations == 60);
-    CHECK(tour.solution.plan->last()[plane::x] == -1);  // three parts of a metre each, whatever was found before
+    CHECK(tour.found.status == Status::solved);
+    CHECK(tour.found.cost == 3);
+    CHECK(tour.record.iterations == 60);
+    CHECK(tour.found.plan->last()[plane::x] == -1);  // three parts of a metre each, whatever was found before
 }
 
 TEST_CASE("a part of a tour that takes too long is searched anew, the second time from another place, for longer") {
     using enum PartOutcome;
     const ScriptedTour tour({found, too_late, too_late, found, found, found});
     CHECK(tour.goals == std::vector<std::size_t>{0, 1, 1, 0, 1, 2});
-    CHECK(tour.solution.status == Status::solved);
-    CHECK(tour.solution.planning.iterations == 10 + 100 + 200 + 30);
+    CHECK(tour.found.status == Status::solved);
+    CHECK(tour.record.iterations == 10 + 100 + 200 + 30);
 }
 
 TEST_CASE("a tour with a part that gives up at once comes to an end") {
     const ScriptedTour tour(std::vector<PartOutcome>(1000, PartOutcome::hopeless));
-    CHECK(tour.solution.status == Status::approximate);
+    CHECK(tour.found.status == Status::approximate);
     CHECK(tour.goals.size() < 10);
 }
 
@@ -261,10 +268,10 @@ TEST_CASE("a tour with a goal behind a wall ends before it and is not called sol
         CHECK_FALSE(solution.execution->goals[2].is_met);
         CHECK(solution.execution->goal_error_m > 1);
         if (variant == Variant::mp_arm_da) {
-            REQUIRE(solution.planning.nearest_approach_m);
-            CHECK(*solution.planning.nearest_approach_m > 0.2);  // the tip to (3, 4.8), the wall at 1.35
-            CHECK(*solution.planning.nearest_approach_m < 4);    // nearer than from the stop before
-            CHECK(solution.planning.obstruction);
+            REQUIRE(solution.nearest_approach_m);
+            CHECK(*solution.nearest_approach_m > 0.2);  // the tip to (3, 4.8), the wall at 1.35
+            CHECK(*solution.nearest_approach_m < 4);    // nearer than from the stop before
+            CHECK(solution.obstruction);
         }
     }
 }

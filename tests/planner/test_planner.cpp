@@ -67,13 +67,13 @@ TEST_CASE("a vehicle in the middle of a flight flies on from its start as it wou
     FlightState whole = start;
     FlightState continued = again;
     REQUIRE(fly_along(model, planner.map(), plan, tick + rest, whole));
-    REQUIRE(fly_along(model, planner.map(), rest_of_plan(plan, tick, *from.reference), rest, continued));
+    REQUIRE(fly_along(model, planner.map(), plan.rest_after(tick), rest, continued));
     CHECK(std::memcmp(&whole.plant.q, &continued.plant.q, sizeof(whole.plant.q)) == 0);
     // A vehicle that forgot what its controller knows flies another way.
     Start forgetful = from;
     forgetful.controller_memory.clear();
     FlightState other = start_state(model, forgetful);
-    REQUIRE(fly_along(model, planner.map(), rest_of_plan(plan, tick, *from.reference), rest, other));
+    REQUIRE(fly_along(model, planner.map(), plan.rest_after(tick), rest, other));
     CHECK(std::memcmp(&whole.plant.q, &other.plant.q, sizeof(whole.plant.q)) != 0);
 }
 

@@ -45,16 +45,10 @@ std::shared_ptr<const AeroMap> map_as_if(const Problem& problem, std::vector<Obs
 
 /// Searches with a map as if other obstacles were there: plans that fly through it may do otherwise when flown
 /// directly.
-Solution solve_deceived(const Problem& problem, std::vector<Obstacle> obstacles) {
+planning::SearchResult solve_deceived(const Problem& problem, std::vector<Obstacle> obstacles) {
     const auto model = make_flight_model(problem);
-    const auto map = map_as_if(problem, std::move(obstacles));
-    Solution solution;
-    planning::search_flights(problem, problem, *model, map.get(), planning::Course::from_start(problem, *model), {}, {},
-                             solution);
-    if (solution.execution) {
-        solution.execution_cost = cost_of(*solution.execution, problem.planner.objective);
-    }
-    return solution;
+    return planning::search_flights(problem, problem, {model, map_as_if(problem, std::move(obstacles))},
+                                    planning::Course::from_start(problem, *model), {}, {});
 }
 
 }  // namespace
@@ -375,21 +369,21 @@ TEST_CASE("rejections are counted by cause") {
 TEST_CASE("a search without a plan says how near it came and what stopped it") {
     const Solution walled = solve(test::walled_problem());
     CHECK(walled.status != Status::solved);
-    REQUIRE(walled.planning.nearest_approach_m);
-    CHECK(*walled.planning.nearest_approach_m > 0.15);  // not beyond the wall, 0.15 m thick on this side
-    REQUIRE(walled.planning.obstruction);
-    CHECK(walled.planning.obstruction->cause == "collision");
-    CHECK(walled.planning.obstruction->at[plane::x] < 0);  // touching the wall from the side of the start
+    REQUIRE(walled.nearest_approach_m);
+    CHECK(*walled.nearest_approach_m > 0.15);  // not beyond the wall, 0.15 m thick on this side
+    REQUIRE(walled.obstruction);
+    CHECK(walled.obstruction->cause == "collision");
+    CHECK(walled.obstruction->at[plane::x] < 0);  // touching the wall from the side of the start
 
     const Solution sucked_in = solve(right_under_the_ceiling());
     CHECK(sucked_in.status != Status::solved);
-    REQUIRE(sucked_in.planning.obstruction);
-    CHECK(sucked_in.planning.obstruction->goal_distance_m < 0.5);
+    REQUIRE(sucked_in.obstruction);
+    CHECK(sucked_in.obstruction->goal_distance_m < 0.5);
 
     const Solution solved = solve(test::ceiling_problem());
     REQUIRE(solved.status == Status::solved);
-    CHECK_FALSE(solved.planning.nearest_approach_m);
-    CHECK_FALSE(solved.planning.obstruction);
+    CHECK_FALSE(solved.nearest_approach_m);
+    CHECK_FALSE(solved.obstruction);
 }
 
 TEST_CASE("a map of another scene, vehicle, model or place is refused") {
@@ -412,12 +406,12 @@ TEST_CASE("a map of another scene, vehicle, model or place is refused") {
 
 TEST_CASE("where every plan was discarded, the direct flight is what stopped the search") {
     Problem problem = right_under_the_ceiling();
-    const Solution solution = solve_deceived(problem, {});
-    CHECK(solution.status != Status::solved);
-    CHECK(solution.planning.rejected.at("direct_flight") > 0);
-    REQUIRE(solution.planning.obstruction);
-    CHECK(solution.planning.obstruction->cause == "direct_flight");
-    CHECK(solution.planning.obstruction->at[plane::z] > 4);
+    const planning::SearchResult result = solve_deceived(problem, {});
+    CHECK(result.found.status != Status::solved);
+    CHECK(result.record.rejected.at("direct_flight") > 0);
+    REQUIRE(result.found.obstruction);
+    CHECK(result.found.obstruction->cause == "direct_flight");
+    CHECK(result.found.obstruction->at[plane::z] > 4);
 }
 
 TEST_CASE("a plan that is cheaper in the planner's model only, and not when flown, is no improvement") {
@@ -429,14 +423,15 @@ TEST_CASE("a plan that is cheaper in the planner's model only, and not when flow
     std::size_t compared = 0;
     for (problem.planner.seed = 1; problem.planner.seed <= 3; ++problem.planner.seed) {
         CAPTURE(problem.planner.seed);
-        const Solution solution = solve_deceived(problem, {test::box("ground", {30, 20, 1}, {0, 0, 1.1})});
-        REQUIRE(solution.status == Status::solved);
-        const auto& improvements = solution.planning.improvements;
+        const auto [found, record, attempts, weak] =
+            solve_deceived(problem, {test::box("ground", {30, 20, 1}, {0, 0, 1.1})});
+        REQUIRE(found.status == Status::solved);
+        const auto& improvements = record.improvements;
         for (std::size_t i = 1; i < improvements.size(); ++i, ++compared) {
             CHECK(improvements[i].flown_cost < improvements[i - 1].flown_cost);
         }
-        CHECK(improvements.back().flown_cost == solution.execution_cost);
-        CHECK(improvements.back().cost == solution.cost);
+        CHECK(improvements.back().flown_cost == cost_of(*found.execution, problem.planner.objective));
+        CHECK(improvements.back().cost == found.cost);
     }
     CHECK(compared > 0);
 }

@@ -1,0 +1,34 @@
+#include "downwash/planner/course.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+#include "downwash/planner/world_flights.hpp"
+#include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/flight.hpp"
+
+namespace downwash::planning {
+
+Course Course::from_start(const Problem& problem, const FlightModel& model) {
+    Course course;
+    course.vehicle = start_state(model, problem.start);
+    return course;
+}
+
+Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const PlannerModel& model,
+                bool plans_flights) {
+    const std::size_t flown = course.plan.reference.empty() ? 1 : course.plan.reference.size();
+    course.plan = with_hover(course.plan.followed_by(part), goal, *model.flight);
+    for (std::size_t knot = flown; knot < course.plan.reference.size(); ++knot) {
+        const SegmentFlight flight =
+            fly(*model.flight, model.map.get(), rules_of_execution(), course.plan.segment_to(knot), course.vehicle);
+        if (flight.rejection != Rejection::none && plans_flights) {
+            throw std::logic_error("a part of a plan does not fly as it was planned");
+        }
+    }
+    course.goals.push_back(goal);
+    course.cost += cost;
+    return course;
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/plan.hpp"
+#include "downwash/planner/planner_model.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_model.hpp"
+
+namespace downwash::planning {
+
+/// The flight that leads to the start of a search for the way to one of several goals. Empty for the first goal.
+struct Course {
+    std::vector<Goal> goals;     ///< reached and held
+    Plan plan;                   ///< through them, to the end of the last hold
+    std::uint64_t attempts = 0;  ///< plans that asked for a certificate on the way
+    FlightState vehicle;         ///< the whole vehicle there, as the planner's own model flies it
+    double cost = 0;
+
+    /// The course before the first goal.
+    [[nodiscard]] DOWNWASH_EXPORT static Course from_start(const Problem& problem, const FlightModel& model);
+
+    /// Ticks from the start of the flight.
+    [[nodiscard]] std::int64_t ticks() const { return plan.reference.empty() ? 0 : plan.reference.back().tick; }
+};
+
+/// Adds a part's plan and the hold at its end to a course, and flies them in the planner's model.
+/// @param cost of the part, hold included   @param plans_flights what was planned by flights flies as it did; of
+/// MP-ARM's plans nobody has to know where the vehicle gets to, as none of them looks at it
+[[nodiscard]] Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const PlannerModel& model,
+                              bool plans_flights);
+
+}  // namespace downwash::planning

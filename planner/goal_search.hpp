@@ -1,0 +1,14 @@
+#pragma once
+
+#include "downwash/planner/flight_search.hpp"
+
+namespace downwash::planning {
+
+/// Searches for the way to one goal with the algorithm that the problem names. Its settings hold limits and seed.
+/// @param part a problem without stops, whose start is at the end of the course before
+/// @param whole the problem that it is a part of, or itself
+/// @return cost and plan from the part's start on; the execution, if there is one, of course and plan together
+[[nodiscard]] SearchResult search_goal(const Problem& part, const Problem& whole, const PlannerModel& model,
+                                       const Course& before, const PlanChecks& checks, const SolveOptions& options);
+
+}  // namespace downwash::planning

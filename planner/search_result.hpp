@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "downwash/planner/found.hpp"
+#include "downwash/search/search_record.hpp"
+
+namespace downwash::planning {
+
+/// What a search, or all searches for the goals of a problem, came to.
+struct SearchResult {
+    Found found;
+    SearchRecord record;         ///< how it went
+    std::uint64_t attempts = 0;  ///< plans that asked for a certificate, those before the search included
+    /// The goal before, from 0, the way to which has to be searched anew: its flights fail most often in the worlds of
+    /// certificates, so that no way from there helps. Of a search for the way to one of several goals.
+    std::optional<std::size_t> weak_goal = {};
+};
+
+}  // namespace downwash::planning
