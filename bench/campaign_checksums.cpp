@@ -120,7 +120,7 @@ std::string checksum_of(const Run& run) {
     bytes.add(experiment, planner, seed, status, wall_s, first_solution_s, cost, nearest_approach_m, iterations,
               edges_simulated, states_checked, simulated_s, discarded, improvements, rejections, flight, error,
               certificate, first_certified_s, in_worlds);
-    if (made_on) {  // results of layout 6 have none
+    if (made_on) {
         bytes.add(*made_on);
     }
     return bytes.digest();
@@ -131,7 +131,7 @@ std::string checksum_of(const CampaignPlan& plan) {
                  shards] = plan;
     Bytes bytes;
     bytes.add(settings, experiments, planners, seeds, expectations, left_out, time_limit_s, stops_at_first, worlds);
-    if (shards) {  // results of layout 6 have none
+    if (shards) {
         bytes.add(*shards);
     }
     return bytes.digest();

@@ -155,7 +155,7 @@ struct Run {
         {};  ///< the certificate of its plan, where the problem has an uncertainty
     std::optional<double> first_certified_s = {};  ///< from the parsed problem; of a planner that asks for them
     std::optional<WorldFigures> in_worlds = {};  ///< flights of a solved run in worlds, if the campaign evaluates plans
-    std::optional<RunMachine> made_on = {};      ///< empty in results of versions that did not record it
+    std::optional<RunMachine> made_on = {};      ///< empty before it is run
 
     [[nodiscard]] bool has_failed_flight() const {
         return status == RunStatus::solved && flight && flight->outcome != Outcome::ok;

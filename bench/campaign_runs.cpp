@@ -67,11 +67,9 @@ constexpr std::array of_run{"progress",   "flights", "certificates", "world_flig
 class BlockReader {
  public:
     explicit BlockReader(const Database& database) : database_(database) {
-        if (database.number("PRAGMA user_version") != layout_without_machines) {
-            database.for_each<Count, Text, Text, Text>(
-                "SELECT id, host, processor, instruction_set FROM machines",
-                [&](Count key, const auto&... columns) { machines_[key] = {columns...}; });
-        }
+        database.for_each<Count, Text, Text, Text>(
+            "SELECT id, host, processor, instruction_set FROM machines",
+            [&](Count key, const auto&... columns) { machines_[key] = {columns...}; });
     }
 
     /// The next runs; none after the last one. They are valid until the next call.
@@ -150,9 +148,9 @@ class BlockReader {
         rows<Text, double, double, double, double, double, double>(
             "outcome, cost, energy_j, duration_s, length_m, min_clearance_m, goal_error_m", "flights", "",
             [](StoredRun& of, const Text& outcome, const auto&... figures) {
-                if (const auto known =
-                        named(outcome, {Outcome::ok, Outcome::collision, Outcome::unstable, Outcome::left_flyable_area,
-                                        Outcome::goal_missed, Outcome::over_budget})) {
+                if (const auto known = named(
+                        outcome, std::array{Outcome::ok, Outcome::collision, Outcome::unstable,
+                                            Outcome::left_flyable_area, Outcome::goal_missed, Outcome::over_budget})) {
                     of.run.flight = {*known, figures...};
                 }
             });
@@ -188,9 +186,6 @@ class BlockReader {
     }
 
     void read_machines() {
-        if (machines_.empty()) {
-            return;
-        }
         rows<Count, double>("machineid, load", "run_machines", "", [&](StoredRun& of, Count machine, double load) {
             if (const auto found = machines_.find(machine); found != machines_.end()) {
                 of.run.made_on = {found->second, load};

@@ -1,7 +1,6 @@
 #include "downwash/bench/campaign_schema.hpp"
 
 #include <array>
-#include <map>
 
 #include "downwash/base/version.hpp"
 #include "downwash/bench/campaign_checksums.hpp"
@@ -13,8 +12,6 @@ namespace {
 /// "Down" in ASCII: identifies the SQLite file, also for file(1).
 constexpr std::uint64_t application_id = 0x446f776e;
 constexpr std::uint64_t layout_version = 8;
-/// Has a row for each seed. It can be read, but not continued.
-constexpr std::uint64_t layout_of_single_seeds = 7;
 
 // OMPL's ompl_benchmark_statistics.py makes the first five tables, with the columns that it lets a log add to
 // experiments, runs and progress. Planner Arena reads them.
@@ -76,15 +73,7 @@ CREATE TABLE expectations (
   first_solution_median_s REAL, first_solution_95_s REAL, verified_median_s REAL, cost_after_s REAL, cost_to_best REAL,
   cheaper_than TEXT, cheaper_than_after_s REAL, max_failure_share REAL, certified_ratio REAL,
   first_certified_median_s REAL);
-)";
-
-constexpr const char* table_of_seeds =
-    "CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, first INTEGER NOT NULL, last INTEGER NOT NULL);";
-constexpr const char* table_of_single_seeds =
-    "CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, seed INTEGER NOT NULL UNIQUE);";
-
-/// From layout 7 on.
-constexpr const char* layout_of_machines = R"(
+CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, first INTEGER NOT NULL, last INTEGER NOT NULL);
 CREATE TABLE machines (
   id INTEGER PRIMARY KEY, host TEXT NOT NULL, processor TEXT NOT NULL, instruction_set TEXT NOT NULL,
   UNIQUE (host, processor, instruction_set));
@@ -104,7 +93,7 @@ constexpr const char* expectation_columns =
 
 /// The first variant where none has that name: the checksum tells.
 Variant variant_of(const std::string& name) {
-    return named(name, {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada}).value_or(Variant::mp_arm);
+    return named(name, all_variants).value_or(Variant::mp_arm);
 }
 
 std::string all_settings(const CampaignPlan& plan) {
@@ -149,35 +138,20 @@ Schema schema_of(const Database& database) {
     return schema;
 }
 
-void make_tables(const Database& database, std::uint64_t version) {
-    database.execute(layout);
-    database.execute(version == layout_version ? table_of_seeds : table_of_single_seeds);
-    if (version != layout_without_machines) {
-        database.execute(layout_of_machines);
-    }
-}
-
-/// The same as a layout that this version reads makes it.
-const Schema& our_schema(std::uint64_t version) {
-    static const std::map<std::uint64_t, Schema> schemas = [] {
-        std::map<std::uint64_t, Schema> made;
-        for (const std::uint64_t number : {layout_without_machines, layout_of_single_seeds, layout_version}) {
-            const Database ours(":memory:", true);
-            make_tables(ours, number);
-            made[number] = schema_of(ours);
-        }
-        return made;
+/// What schema_of() says of a file of ours.
+const Schema& our_schema() {
+    static const Schema schema = [] {
+        const Database ours(":memory:", true);
+        ours.execute(layout);
+        return schema_of(ours);
     }();
-    return schemas.at(version);
+    return schema;
 }
 
 std::vector<std::uint32_t> read_seeds(const Database& database) {
     std::vector<std::uint32_t> seeds;
-    const bool single = database.number("PRAGMA user_version") != layout_version;
     database.for_each<std::uint64_t, std::uint64_t>(
-        single ? "SELECT seed, seed FROM campaign_seeds ORDER BY place"
-               : "SELECT first, last FROM campaign_seeds ORDER BY place",
-        [&](std::uint64_t first, std::uint64_t last) {
+        "SELECT first, last FROM campaign_seeds ORDER BY place", [&](std::uint64_t first, std::uint64_t last) {
             // A damaged range may be endless: more seeds than any campaign has are enough for the checksum to differ.
             for (std::uint64_t seed = first; seed <= last && seeds.size() <= max_campaign_runs; ++seed) {
                 seeds.push_back(static_cast<std::uint32_t>(seed));
@@ -214,42 +188,31 @@ void require_layout(const Database& database, const std::filesystem::path& file)
         throw CampaignError(file.string() + " holds no results of a campaign; choose another folder");
     }
     const std::uint64_t version = database.number("PRAGMA user_version");
-    if (version != layout_version && version != layout_of_single_seeds && version != layout_without_machines) {
+    if (version != layout_version) {
         throw CampaignError(file.string() + " holds no results that this version can read: its layout is number " +
                             std::to_string(version) + ", not " + std::to_string(layout_version) +
                             ". Report it with the version of downwash that wrote it, or run the campaign again into "
                             "another folder");
     }
     // A table may be a view that never ends, or have triggers that change what we read.
-    if (schema_of(database) != our_schema(version)) {
+    if (schema_of(database) != our_schema()) {
         throw CampaignError(file.string() +
                             " has other tables than `downwash bench run` makes: it is damaged, or another program "
                             "wrote into it. Restore it from a copy, or run the campaign again into another folder");
     }
 }
 
-void require_present_layout(const Database& database, const std::filesystem::path& file) {
-    if (database.number("PRAGMA user_version") != layout_version) {
-        throw CampaignError(
-            file.string() +
-            " was begun by an earlier version of downwash and has other tables. `downwash bench report` "
-            "reads it; to add runs, run the campaign again into another folder");
-    }
-}
-
 std::optional<std::uint64_t> shard_number(const Database& database) {
     std::optional<std::uint64_t> number;
-    if (database.number("PRAGMA user_version") != layout_without_machines) {
-        database.for_each<std::optional<std::uint64_t>>("SELECT number FROM shard",
-                                                        [&](const auto& found) { number = found; });
-    }
+    database.for_each<std::optional<std::uint64_t>>("SELECT number FROM shard",
+                                                    [&](const auto& found) { number = found; });
     return number;
 }
 
 void write_plan(const Database& database, const CampaignPlan& plan, std::optional<std::uint64_t> shard) {
     database.execute("PRAGMA application_id = " + std::to_string(application_id));
     database.execute("PRAGMA user_version = " + std::to_string(layout_version));
-    make_tables(database, layout_version);
+    database.execute(layout);
     write_what_runs(database, plan);
     if (plan.shards) {
         write_shards(database, *plan.shards, shard);
@@ -321,9 +284,7 @@ CampaignPlan read_plan(const Database& database, const std::filesystem::path& fi
             plan.stop_at_first_solution = stops != 0;
             plan.evaluation_worlds = worlds;
         });
-    if (database.number("PRAGMA user_version") != layout_without_machines) {
-        read_shards(database, plan);
-    }
+    read_shards(database, plan);
     if (stored_plan_checksum(database) != checksum_of(plan)) {
         throw CampaignError(file.string() +
                             ": what says which runs belong to the campaign is damaged (settings, problems, planners, "

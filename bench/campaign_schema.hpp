@@ -1,6 +1,5 @@
 #pragma once
 
-#include <initializer_list>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -21,14 +20,8 @@ inline constexpr const char* results_file = "campaign.db";
 /// Whether nothing was written yet: SQLite makes an empty file, and a kill may leave one.
 [[nodiscard]] bool is_new(const Database& database);
 
-/// The layout of versions that did not record the machine of each run. It can be read, but not continued.
-inline constexpr std::uint64_t layout_without_machines = 6;
-
-/// @throws CampaignError unless the file has exactly the tables of a layout that this version reads
+/// @throws CampaignError unless the file has exactly the tables that this version makes
 void require_layout(const Database& database, const std::filesystem::path& file);
-
-/// @throws CampaignError unless runs can be added to the file. @pre require_layout()
-void require_present_layout(const Database& database, const std::filesystem::path& file);
 
 /// Makes the tables and writes what is going to run. @pre is_new(database)
 /// @param shard its number, if the file is going to hold a shard alone
@@ -48,9 +41,9 @@ void write_plan(const Database& database, const CampaignPlan& plan, std::optiona
 [[nodiscard]] std::string setting(const CampaignPlan& plan, std::string_view name);
 
 /// The value whose name that is; empty when none has it.
-template <class Enumeration>
-std::optional<Enumeration> named(const std::string& name, std::initializer_list<Enumeration> values) {
-    for (const Enumeration value : values) {
+template <class Values>
+std::optional<typename Values::value_type> named(const std::string& name, const Values& values) {
+    for (const auto value : values) {
         if (name_of(value) == name) {
             return value;
         }

@@ -157,7 +157,6 @@ CampaignStore::CampaignStore(const std::filesystem::path& folder, const Campaign
     if (!resumes) {
         throw CampaignError(file_.string() + " holds runs already; --resume continues with them");
     }
-    require_present_layout(database_, file_);
     const CampaignPlan begun = read_plan(database_, file_);
     require_equal_settings(begun, plan, file_);
     require_same_shard(database_, shard, file_);

@@ -108,7 +108,6 @@ std::optional<Stored> stored_in(const fs::path& folder) {
     if (runs == 0) {
         return std::nullopt;
     }
-    require_present_layout(database, file);
     return Stored{stored_plan_checksum(database), shard_number(database), runs};
 }
 

@@ -14,7 +14,7 @@ from .problem import Path
 __all__ = ["Campaign"]
 
 _APPLICATION_ID = 0x446F776E  # "Down" in ASCII
-_LAYOUTS = (6, 7, 8)  # from 7 on with the machine of each run
+_LAYOUT = 8
 _NAMES = """runs.id AS run, experiments.problem, experiments.objective, plannerConfigs.variant,
     plannerConfigs.algorithm, plannerConfigs.margin_m, runs.seed"""
 _OF_RUNS = """runs JOIN experiments ON runs.experimentid = experiments.id
@@ -40,18 +40,17 @@ class Campaign:
                     database.execute(f"PRAGMA {name}").fetchone()[0] for name in ("application_id", "user_version")
                 ]
                 self.settings: dict[str, str] = dict(
-                    database.execute("SELECT name, value FROM campaign ORDER BY place") if marks[1] in _LAYOUTS else ()
+                    database.execute("SELECT name, value FROM campaign ORDER BY place") if marks[1] == _LAYOUT else ()
                 )
         except sqlite3.DatabaseError as error:
             raise InputError(f"{self._file} cannot be read: {error}") from None
         if marks[0] != _APPLICATION_ID:
             raise InputError(f"{self._file} holds no results of a campaign; choose another folder")
-        if marks[1] not in _LAYOUTS:
+        if marks[1] != _LAYOUT:
             raise InputError(
                 f"{self._file} holds no results that this version can read: its layout is number {marks[1]}, "
-                f"not {_LAYOUTS[-1]}"
+                f"not {_LAYOUT}"
             )
-        self._has_machines = marks[1] != _LAYOUTS[0]
 
     def _open(self) -> sqlite3.Connection:
         return sqlite3.connect(pathlib.Path(self._file).absolute().as_uri() + "?mode=ro", uri=True)
@@ -106,9 +105,7 @@ class Campaign:
 
     def machines(self) -> Any:
         """A row for every run: host, processor (its model), instruction_set, and load, the processes that ran or waited
-        to run when the run ended. Raises InputError for results of versions that did not record them."""
-        if not self._has_machines:
-            raise InputError(f"{self._file} does not say where its runs were made: an earlier version wrote it")
+        to run when the run ended."""
         return self._frame(
             "machines.host, machines.processor, machines.instruction_set, run_machines.load",
             """JOIN run_machines ON run_machines.runid = runs.id

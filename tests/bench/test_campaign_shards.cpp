@@ -283,32 +283,6 @@ TEST_CASE("a file of results that is taken away is noticed before a run is lost"
     CHECK(read_results(folder / "elsewhere").runs.size() == 1);
 }
 
-TEST_CASE("results of former layouts are reported, and not continued") {
-    const std::string single_seeds =
-        "DROP TABLE campaign_seeds; "
-        "CREATE TABLE campaign_seeds (place INTEGER PRIMARY KEY, seed INTEGER NOT NULL UNIQUE); "
-        "INSERT INTO campaign_seeds (seed) VALUES (1), (2), (3); ";
-    const std::string change =
-        single_seeds + GENERATE("PRAGMA user_version = 7",
-                                "DROP TABLE run_machines; DROP TABLE machines; DROP TABLE shard; "
-                                "DROP TABLE shard_costs; PRAGMA user_version = 6");
-    CAPTURE(change);
-    const ScratchFolder folder;
-    const ReadCampaign read = quick_campaign(3);
-    {
-        CampaignStore store(folder / "results", plan_of(read), false);
-        Run run;
-        run.seed = 1;
-        store.add(run);
-    }
-    CHECK(answer(folder, change).empty());
-    const CampaignReport report = read_report(folder / "results");
-    CHECK(report.done == 1);
-    CHECK(report.plan.seeds == std::vector<std::uint32_t>{1, 2, 3});
-    CHECK(report.processor_models() == 0);
-    CHECK_THROWS_WITH(run_into(folder, read, true), Contains("was begun by an earlier version"));
-}
-
 TEST_CASE("a shard of a campaign with very many seeds has a small file") {
     const ScratchFolder folder;
     CampaignPlan plan = plan_of(quick_campaign(2));
