@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,10 +10,6 @@ namespace downwash {
 
 /// Bytes as RFC 4648 writes them, padded, without line breaks. @pre at most 1.5 GB
 [[nodiscard]] DOWNWASH_EXPORT std::string base64_text(std::string_view bytes);
-
-/// The bytes that base64_text turns into this text; empty when there are none: a length that is no multiple of 4,
-/// another letter, padding before the end, bits set in what the padding leaves over, 2 GiB or more.
-[[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> base64_bytes(std::string_view text);
 
 /// Letters of the text of so many bytes.
 [[nodiscard]] constexpr std::size_t base64_letters(std::size_t bytes) noexcept {

@@ -87,16 +87,4 @@ double normal_quantile(double p) noexcept {
     return q < 0 ? -x : x;
 }
 
-double normal_probability(double x) noexcept {
-    // 1/2 + phi(x) (x + x^3 / 3 + x^5 / (3 5) + ...), without loss up to 8 standard deviations of a lower tail's size.
-    const double w = x * x;
-    double term = x;
-    double sum = x;
-    for (int k = 3; std::fabs(term) > 1e-18 * std::fabs(sum); k += 2) {
-        term *= w / k;
-        sum += term;
-    }
-    return 0.5 + 0.3989422804014327 * natural_exp(-0.5 * w) * sum;
-}
-
 }  // namespace downwash

@@ -16,7 +16,4 @@ namespace downwash {
 /// algorithm AS 241). @param p between 0 and 1, both excluded
 [[nodiscard]] DOWNWASH_EXPORT double normal_quantile(double p) noexcept;
 
-/// The probability with which a standard normal variable stays below x, to some 1e-14. @param x at most 8 in size
-[[nodiscard]] DOWNWASH_EXPORT double normal_probability(double x) noexcept;
-
 }  // namespace downwash

@@ -136,10 +136,6 @@ double between(double a, double b, double part) {
 
 }  // namespace
 
-std::span<const std::string_view> grid_field_names() {
-    return field_names;
-}
-
 FactorGrid::FactorGrid(FactorGridParts parts) : parts_(std::move(parts)) {
     std::vector<KeyError> errors;
     const Vector3& origin_m = parts_.frame.origin_m();

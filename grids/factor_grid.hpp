@@ -111,7 +111,4 @@ inline constexpr std::size_t max_grid_nodes = std::size_t{1} << 24U;
 /// No value of a grid is larger.
 inline constexpr double max_grid_factor = 100;
 
-/// The names a field may have, "factor" first.
-[[nodiscard]] DOWNWASH_EXPORT std::span<const std::string_view> grid_field_names();
-
 }  // namespace downwash

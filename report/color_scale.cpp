@@ -9,11 +9,6 @@
 namespace downwash {
 namespace {
 
-/// Viridis of matplotlib (Smith, van der Walt, Firing 2015) in nine equal steps, from light to dark.
-constexpr std::array viridis{color_of(0xfde725), color_of(0xb5de2b), color_of(0x6ece58), color_of(0x35b779),
-                             color_of(0x1f9e89), color_of(0x26828e), color_of(0x31688e), color_of(0x3e4989),
-                             color_of(0x482878), color_of(0x440154)};
-
 /// The halves of RdBu of ColorBrewer (Brewer 2002), outwards from the middle.
 constexpr Color neutral = color_of(0xf7f7f7);
 constexpr std::array blues{color_of(0xd1e5f0), color_of(0x92c5de), color_of(0x4393c3), color_of(0x2166ac),
@@ -110,22 +105,6 @@ ColorScale factor_scale(std::string label, const AxisRange& range) {
     }
     scale.limits.push_back(1 + above_one[above - 1].to);
     scale.neutral = 1;
-    return scale;
-}
-
-ColorScale linear_scale(std::string label, double low, double high) {
-    constexpr double wanted_classes = 10;
-    const double step = round_step((high - low) / wanted_classes);
-    ColorScale scale;
-    scale.label = std::move(label);
-    const double first = std::floor(low / step + 1e-9);
-    const double last = std::max(std::ceil(high / step - 1e-9), first + 2);
-    for (double i = first; i <= last; ++i) {
-        scale.limits.push_back(i * step);
-    }
-    for (std::size_t i = 0; i + 1 < scale.limits.size(); ++i) {
-        scale.colors.push_back(spread(viridis, i, scale.limits.size() - 1));
-    }
     return scale;
 }
 

@@ -31,9 +31,6 @@ struct ColorScale {
 /// @param range of all values of the problem, not only of the shown ones, so that a zoom changes nothing
 [[nodiscard]] DOWNWASH_EXPORT ColorScale factor_scale(std::string label, const AxisRange& range);
 
-/// Equal classes through viridis over [low, high], with limits at round numbers. @pre low < high, both finite
-[[nodiscard]] DOWNWASH_EXPORT ColorScale linear_scale(std::string label, double low, double high);
-
 /// Blue below zero and red above, finest at zero: limits at 1, 2 and 5 times powers of ten up to `reach`.
 /// @pre reach > 0 and finite  @param classes on each side, from 2 to 8
 [[nodiscard]] DOWNWASH_EXPORT ColorScale signed_scale(std::string label, double reach, int classes = 6);

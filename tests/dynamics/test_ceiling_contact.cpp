@@ -3,8 +3,8 @@
 
 #include "downwash/dynamics/ceiling_tick.hpp"
 #include "downwash/dynamics/quadrotor.hpp"
-#include "downwash/dynamics/space_energy.hpp"
 #include "random_space_plant.hpp"
+#include "space_energy.hpp"
 
 // The platform of thesis 4.3: 1.5 kg, rotors 0.24 m from the centre, guards of 0.28 m that reach 4 cm over the rotors.
 

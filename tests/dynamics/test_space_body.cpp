@@ -1,7 +1,7 @@
 #include <catch2/catch.hpp>
 
-#include "downwash/dynamics/space_energy.hpp"
 #include "random_space_plant.hpp"
+#include "space_energy.hpp"
 #include "space_newton_euler.hpp"
 
 using namespace downwash;

@@ -4,8 +4,8 @@
 
 #include "downwash/base/lane_pack.hpp"
 #include "downwash/base/numbers.hpp"
-#include "downwash/dynamics/space_energy.hpp"
 #include "random_space_plant.hpp"
+#include "space_energy.hpp"
 
 using namespace downwash;
 using namespace downwash::test;

@@ -3,7 +3,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "downwash/base/base64.hpp"
+#include "../support/base64_bytes.hpp"
 #include "downwash/base/byte_order.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
 #include "grids.hpp"
@@ -34,8 +34,9 @@ class Written {
         std::map<std::string, std::vector<double>> all;
         for (const pugi::xml_node& array : image().child("Piece").child("PointData")) {
             const std::size_t begin = array.attribute("offset").as_ullong();
-            const std::size_t size = number_at<std::uint64_t>(base64_bytes(data.substr(begin, 12)).value().data());
-            const std::string bytes = base64_bytes(data.substr(begin, base64_letters(size + 8))).value();
+            const std::size_t size =
+                number_at<std::uint64_t>(test::base64_bytes(data.substr(begin, 12)).value().data());
+            const std::string bytes = test::base64_bytes(data.substr(begin, base64_letters(size + 8))).value();
             auto& values = all[array.attribute("Name").as_string()];
             for (std::size_t at = 8; at < bytes.size(); at += 8) {
                 values.push_back(number_at<double>(bytes.data() + at));

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "../support/base64_bytes.hpp"
 #include "../support/solved_run.hpp"
-#include "downwash/base/base64.hpp"
 #include "downwash/report/run_figures.hpp"
 
 using namespace downwash;
@@ -28,7 +28,7 @@ json data_of(const SolvedRun& run) {
 }
 
 std::string unpacked(const json& text, std::size_t size) {
-    const std::string packed = base64_bytes(text.get<std::string>()).value();
+    const std::string packed = test::base64_bytes(text.get<std::string>()).value();
     std::string bytes(size, '\0');
     auto written = static_cast<uLongf>(size);
     REQUIRE(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &written, reinterpret_cast<const Bytef*>(packed.data()),
