@@ -10,7 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "downwash/aeromap/layer_builder.hpp"
+#include "downwash/aeromap/cell_refinement.hpp"
+#include "downwash/aeromap/layer_grid.hpp"
 
 namespace downwash {
 

@@ -5,22 +5,11 @@
 #include <cstddef>
 #include <vector>
 
-#include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/cell_refinement.hpp"
-#include "downwash/base/stop_condition.hpp"
+#include "downwash/aeromap/layer_grid.hpp"
+#include "downwash/aeromap/map_view.hpp"
 
 namespace downwash {
-
-/// The raster of one layer: what a builder needs to know of the map.
-struct LayerGrid {
-    const DirectEffect& effect;
-    const PlaneOfMotion& plane;
-    double lateral_m;
-    double x_low_m, z_low_m;
-    double side_m;
-    std::size_t columns, rows;
-    const StopCondition& is_over;  ///< asked before K or a clearance is evaluated
-};
 
 /// Some rows of cells, as they will stand in the layer.
 struct CellRows {
@@ -29,11 +18,6 @@ struct CellRows {
     std::vector<CellSides> sides;
     std::vector<float>
         nodes;  ///< K at the nodes of one cell after the other: of all surfaces, then of those above where both matter
-};
-
-/// Some columns of a layer, [first, last); none if the last is not beyond the first.
-struct ColumnRange {
-    std::size_t first, last;
 };
 
 /// A layer before a part of its scene changed.

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "downwash/bench/campaign_report.hpp"
+#include "downwash/bench/campaign_figures.hpp"
 #include "downwash/bench/run_figures.hpp"
 
 namespace downwash::bench {

@@ -8,6 +8,7 @@
 #include "downwash/studies/ceiling_envelope.hpp"
 #include "downwash/studies/disturbance_test_bench.hpp"
 #include "downwash/studies/partial_ground_effect.hpp"
+#include "downwash/studies/study_files.hpp"
 
 namespace downwash::cli {
 namespace {

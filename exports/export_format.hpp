@@ -1,28 +1,14 @@
 #pragma once
 
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "downwash/base/export.hpp"
+#include "downwash/exports/export_settings.hpp"
 #include "downwash/results/run_record.hpp"
 
 namespace downwash {
-
-/// The position of the world frame on the Earth.
-struct GeodeticOrigin {
-    double latitude_deg = 0;   ///< WGS 84, -90 to 90
-    double longitude_deg = 0;  ///< -180 to 180
-    double altitude_m = 0;     ///< height of z = 0 above mean sea level
-    double bearing_deg = 0;    ///< compass direction of the x axis, clockwise from north, -360 to 360
-};
-
-/// Settings that a format may need besides the run.
-struct ExportSettings {
-    std::optional<double> rate_hz;  ///< rate of set-points; empty: the rate of the controller
-    std::optional<GeodeticOrigin> origin;
-};
 
 /// One format.
 struct ExportFormat {

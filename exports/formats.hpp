@@ -3,9 +3,11 @@
 // Private: not installed. One function for each row of export_formats().
 
 #include <string>
+#include <vector>
 
-#include "downwash/exports/export_format.hpp"
+#include "downwash/exports/export_settings.hpp"
 #include "downwash/exports/setpoints.hpp"
+#include "downwash/results/run_record.hpp"
 
 namespace downwash {
 

@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "downwash/judge/control_law.hpp"
+#include "downwash/judge/judged_flight.hpp"
 #include "downwash/judge/loop.hpp"
 #include "downwash/judge/obstacles.hpp"
-#include "downwash/judge/plan_judge.hpp"
 #include "downwash/judge/umpire.hpp"
 
 // A vehicle in a world, with all that acts on it and the umpire beside it. Private: not installed.

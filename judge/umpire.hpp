@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "downwash/judge/judged_flight.hpp"
 #include "downwash/judge/loop.hpp"
 #include "downwash/judge/obstacles.hpp"
-#include "downwash/judge/plan_judge.hpp"
 
 // The rules of docs/model.md 7. Private: not installed.
 

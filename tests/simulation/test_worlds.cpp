@@ -5,10 +5,12 @@
 #include <numbers>
 
 #include "../support/same_bytes.hpp"
+#include "downwash/dynamics/rigid_body.hpp"
 #include "downwash/simulation/direct_field.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/noise.hpp"
 #include "downwash/simulation/surroundings.hpp"
+#include "downwash/simulation/world_tick.hpp"
 #include "hover_scenes.hpp"
 
 // Flights where plant, surfaces, sensors and air are not what the controller believes.

@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "downwash/studies/study.hpp"
+#include "downwash/studies/study_files.hpp"
 
 using namespace downwash;
 using namespace downwash::studies;

@@ -1,4 +1,4 @@
-#include "downwash/studies/study.hpp"
+#include "downwash/studies/study_files.hpp"
 
 #include <fmt/core.h>
 
