@@ -9,7 +9,7 @@
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
-./dev build --target downwash >&2
+./dev build --target programs >&2
 commit=$(sed -n 's/^#define DOWNWASH_SOURCE_COMMIT "\(.*\)"$/\1/p' build/bench/source_commit.hpp)
 names=("$@")
 [[ ${#names[@]} -gt 0 ]] || names=(bridge saving algorithms cost margins variants all first_certified certified)

@@ -4,7 +4,7 @@
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
-./dev build --target downwash --target bench_dynobench_ompl >&2
+./dev build --target programs --target bench_dynobench_ompl >&2
 work=build/dynobench
 rm -rf "$work"
 mkdir -p "$work" bench/results

@@ -7,6 +7,7 @@
 #include "downwash/base/line_errors.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/fit_commands.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -24,12 +25,6 @@ constexpr char explanation[] =
     "overstating is optimistic: the plan counts on lift, stiffness and savings that do not exist. Understating has\n"
     "the opposite consequences. `others`: the RMSE over all level measurements of other sources at that surface.\n"
     "`level`: the RMSE if a tilted rotor counted as level.\n";
-
-struct CompareArguments {
-    std::vector<std::string> files;
-    MeasuredData data;
-    bool as_json = false, as_markdown = false;
-};
 
 Json parameters_json(const ModelScore& score) {
     auto parameters = Json::object();
@@ -228,7 +223,9 @@ void require_known_surfaces(const Measurements& measurements, const std::string&
     errors.throw_any();
 }
 
-ExitCode run(const CompareArguments& given) {
+}  // namespace
+
+ExitCode compare_models(const CompareArguments& given) {
     if (given.as_json && given.as_markdown) {
         throw UsageError("--json and --markdown: expected at most one of them");
     }
@@ -252,18 +249,6 @@ ExitCode run(const CompareArguments& given) {
     }
     print_scatter(scatters, given.as_markdown);
     return ExitCode::done;
-}
-
-}  // namespace
-
-void add_aeromap_compare(Command aeromap, Action& action) {
-    auto [command, given] =
-        add_command(aeromap, action, "compare",
-                    "Compare all models with measurements, each with the parameters of its source and refitted", run);
-    add_data_files(command, given.files);
-    given.data.add_selection(command);
-    add_json(command, given.as_json);
-    command.add_flag("--markdown", given.as_markdown, "Markdown instead of text; tables");
 }
 
 }  // namespace downwash::cli

@@ -9,6 +9,7 @@
 
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/fit_commands.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/output.hpp"
@@ -20,14 +21,6 @@
 
 namespace downwash::cli {
 namespace {
-
-struct FitArguments {
-    MeasuredData data;
-    std::string model;
-    std::vector<std::string> fixed;
-    bool of_tilt = false, of_walls = false, is_weighted = false, as_json = false;
-    std::string picture;
-};
 
 Json fit_json(const EffectModelInfo& model, const EffectFit& fit, const std::vector<Measurement>& points) {
     auto values = Json::object();
@@ -284,7 +277,9 @@ ExitCode fit_wall(const FitArguments& given) {
     return ExitCode::done;
 }
 
-ExitCode run(const FitArguments& given) {
+}  // namespace
+
+ExitCode fit_model(const FitArguments& given) {
     if (given.of_walls) {
         return fit_wall(given);
     }
@@ -339,22 +334,6 @@ ExitCode run(const FitArguments& given) {
         print_fit(given, known, fit);
     }
     return ExitCode::done;
-}
-
-}  // namespace
-
-void add_aeromap_fit(Command aeromap, Action& action) {
-    auto [command, given] =
-        add_command(aeromap, action, "fit", "Fit the parameters of a model to measurements by least squares", run);
-    given.data.add_options(command);
-    offer_models(command.add_option("--model NAME", given.model, "name of a model as in a problem file"));
-    command.add_flag("--tilt-loss", given.of_tilt,
-                     "fit the tilt loss instead of a model, beside the measurements without tilt");
-    command.add_flag("--walls", given.of_walls, "fit force and moment beside a wall instead of a model");
-    command.add_option("--fix NAME=VALUE", given.fixed, "keep a parameter at a value; may be repeated").repeated();
-    command.add_flag("--weighted", given.is_weighted, "weight each residual by 1 / sigma, a column of DATA");
-    add_out(command, "FILE", given.picture, "a picture of measurements, curve and residuals, .svg, .png or .pdf");
-    add_json(command, given.as_json);
 }
 
 }  // namespace downwash::cli

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "downwash/cli/common_options.hpp"
-#include "downwash/cli/completion.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/model_option.hpp"
 #include "downwash/cli/output.hpp"

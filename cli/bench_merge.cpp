@@ -9,6 +9,7 @@
 #include "downwash/bench/campaign_merge.hpp"
 #include "downwash/bench/campaign_report.hpp"
 #include "downwash/bench/campaign_store.hpp"
+#include "downwash/cli/bench_commands.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
@@ -17,12 +18,6 @@
 
 namespace downwash::cli {
 namespace {
-
-struct BenchMergeArguments {
-    std::string out;
-    std::vector<std::string> shards;
-    bool replaces = false;
-};
 
 /// Which runs are missing, and the commands that make them.
 std::string text_of(const bench::MergedCampaign& merged) {
@@ -50,7 +45,9 @@ std::string text_of(const bench::MergedCampaign& merged) {
     return text;
 }
 
-ExitCode run(const BenchMergeArguments& given) {
+}  // namespace
+
+ExitCode merge_shards(const BenchMergeArguments& given) {
     std::vector<std::filesystem::path> shards(given.shards.begin(), given.shards.end());
     if (given.shards == std::vector<std::string>{"-"}) {  // more of them than a command line can hold
         shards.clear();
@@ -76,20 +73,6 @@ ExitCode run(const BenchMergeArguments& given) {
     }
     fmt::print("\n{}", text_of(merged));
     return ExitCode::no_solution;
-}
-
-}  // namespace
-
-void add_bench_merge(Command bench, Action& action) {
-    auto [command, given] = add_command(
-        bench, action, "merge",
-        "Join the shards of a campaign into one folder; exit code 1 if runs are missing, which it then names", run);
-    command.add_option("OUT", given.out, "folder for the merged results").required();
-    command
-        .add_option("SHARD", given.shards,
-                    "folders that `bench run --shard` wrote to; `-`: standard input names them, one in each line")
-        .required();
-    command.add_flag("--force", given.replaces, "replace what is in the folder");
 }
 
 }  // namespace downwash::cli

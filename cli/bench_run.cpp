@@ -7,6 +7,7 @@
 #include "downwash/bench/campaign_report.hpp"
 #include "downwash/bench/campaign_run.hpp"
 #include "downwash/bench/campaign_store.hpp"
+#include "downwash/cli/bench_commands.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
@@ -17,14 +18,6 @@
 
 namespace downwash::cli {
 namespace {
-
-struct BenchRunArguments {
-    std::string campaign;
-    std::optional<std::string> out, shard, pilot, saved;
-    std::optional<std::uint64_t> jobs;
-    std::optional<double> wall_limit_s;
-    bool resumes = false, no_cache = false, is_quiet = false;
-};
 
 /// The part of a campaign that --shard and --pilot ask for; empty: all of it. @throws UsageError
 std::optional<bench::ShardRequest> shard_of(const BenchRunArguments& given) {
@@ -55,7 +48,9 @@ std::filesystem::path out_of(const BenchRunArguments& given, const std::string& 
     return shard ? folder / bench::shard_folder_name(shard->number, shard->count) : folder;
 }
 
-ExitCode run(const BenchRunArguments& given) {
+}  // namespace
+
+ExitCode run_campaign(const BenchRunArguments& given) {
     const std::optional<bench::ShardRequest> shard = shard_of(given);
     Interruption interruption({given.wall_limit_s, {}});
     interruption.expect_results();
@@ -100,31 +95,6 @@ ExitCode run(const BenchRunArguments& given) {
     }
     const bool is_late = !is_over && interruption.code() == ExitCode::done;
     return is_late ? ExitCode::no_solution : is_over ? ExitCode::done : interruption.code();
-}
-
-}  // namespace
-
-void add_bench_run(Command bench, Action& action) {
-    auto [command, given] = add_command(
-        bench, action, "run",
-        "Run problems x variants x algorithms x seeds on all processors into one SQLite file, campaign.db", run);
-    command.add_option("CAMPAIGN", given.campaign, "campaign file").required();
-    add_out(command, "DIR", given.out, "folder for the results; default downwash-out/bench-NAME/");
-    command.add_flag("--resume", given.resumes,
-                     "continue with the results that are there, if they were begun with the same settings");
-    add_jobs(command, given.jobs, "that of the campaign, or one per processor, in a shard one");
-    command.add_option(
-        "--shard I/N", given.shard,
-        "make only the runs of shard I of N; `bench merge` joins the shards. A shard may run on any machine");
-    add_pilot(command, given.pilot, "with --shard, and the same for all shards");
-    command.add_option(
-        "--save DIR", given.saved,
-        "keep a copy of the results there, every two minutes and at the end, and begin with it if it has more "
-        "runs: for results on the disk of one node");
-    add_wall_limit(command, given.wall_limit_s,
-                   "then searches that have not ended are dropped, the exit code is 1, and --resume continues");
-    add_no_cache(command, given.no_cache);
-    add_quiet(command, given.is_quiet);
 }
 
 }  // namespace downwash::cli

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "downwash/cli/common_options.hpp"
-#include "downwash/cli/completion.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/campaign_reader.hpp"

@@ -14,14 +14,16 @@
 
 namespace downwash::cli {
 
-/// Adds a command: if it is given, `run` is called with the values of its options.
+/// Adds a command: if it is given, `run` is called with the values of its options. Without `run` it sets no action.
 /// @return the command and those values, for its options to be added
 template <class Arguments>
 std::pair<Command, Arguments&> add_command(Command parent, Action& action, const std::string& name,
                                            const std::string& description, ExitCode (*run)(const Arguments&)) {
     const auto given = std::make_shared<Arguments>();
     Command command = parent.add_command(name, description);
-    command.on_given([=, &action] { action = [=] { return run(*given); }; });
+    if (run != nullptr) {
+        command.on_given([=, &action] { action = [=] { return run(*given); }; });
+    }
     return {command, *given};
 }
 

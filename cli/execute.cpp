@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "downwash/cli/common_options.hpp"
-#include "downwash/cli/completion.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/plan_origin.hpp"

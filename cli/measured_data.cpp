@@ -9,7 +9,6 @@
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
-#include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 namespace downwash::cli {

@@ -9,7 +9,6 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
-#include "downwash/cli/completion.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_reader.hpp"

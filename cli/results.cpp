@@ -258,8 +258,8 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     if (solution.obstruction) {
         const Obstruction& o = *solution.obstruction;
         text += row("stopped by", fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
-                                              o.at.x_m, o.at.z_m, o.at.arm_rad * degrees_per_radian, o.goal_distance_m,
-                                              missed_region(solution)));
+                                              o.at[plane::x], o.at[plane::z], o.at[plane::arm] * degrees_per_radian,
+                                              o.goal_distance_m, missed_region(solution)));
         const bool is_unfinished =
             solution.certificate && solution.certificate->failures <= CertificateTest::most_failures;
         if (o.cause == "certificate" && is_unfinished) {

@@ -9,17 +9,11 @@
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/progress.hpp"
+#include "downwash/cli/study_commands.hpp"
 #include "downwash/cli/usage_error.hpp"
 
 namespace downwash::cli {
 namespace {
-
-struct StudyUncertaintyArguments {
-    std::vector<std::string> problems;
-    std::string out = "downwash-out/study-uncertainty";
-    bench::StudySettings settings;
-    bool no_cache = false, is_quiet = false, as_json = false;
-};
 
 /// The problems in the folder problems/, in the order of their names.
 std::vector<std::string> shipped_problems() {
@@ -38,7 +32,11 @@ std::vector<std::string> shipped_problems() {
 }
 
 bench::StudySettings settings_of(const StudyUncertaintyArguments& given) {
-    bench::StudySettings settings = given.settings;
+    bench::StudySettings settings;
+    settings.seeds = given.seeds.value_or(settings.seeds);
+    settings.time_limit_s = given.time_limit_s.value_or(settings.time_limit_s);
+    settings.worlds = given.worlds.value_or(settings.worlds);
+    settings.jobs = given.jobs;
     for (const std::string& file : given.problems.empty() ? shipped_problems() : given.problems) {
         Problem problem = read_problem(file, {}, given.is_quiet ? nullptr : print_outdated);
         if (!problem.uncertainty) {
@@ -53,7 +51,9 @@ bench::StudySettings settings_of(const StudyUncertaintyArguments& given) {
     return settings;
 }
 
-ExitCode run(const StudyUncertaintyArguments& given) {
+}  // namespace
+
+ExitCode study_uncertainty(const StudyUncertaintyArguments& given) {
     Interruption interruption;
     interruption.expect_results();
     const std::vector<bench::StudyPart> parts = bench::parts_of(settings_of(given));
@@ -80,31 +80,6 @@ ExitCode run(const StudyUncertaintyArguments& given) {
         fmt::print("{}", bench::markdown_of(figures));
     }
     return figures.done == figures.planned ? ExitCode::done : interruption.code();
-}
-
-}  // namespace
-
-void add_study_uncertainty(Command study, Action& action) {
-    auto [command, given] =
-        add_command(study, action, "uncertainty",
-                    "Compare plans for the nominal world, with margins, in one pessimistic world and in "
-                    "several worlds: how "
-                    "often they are found and fail, what they cost. Continues with the results that are there",
-                    run);
-    command.add_option("--problem FILE...", given.problems, "problem files; default: all in the folder problems/");
-    command.add_option("--seeds N", given.settings.seeds, "searches of each setup on each problem; default 20")
-        .in_range(1, 100000);
-    command.add_option("--time-limit S", given.settings.time_limit_s, "wall time of a search [s]; default 5")
-        .in_range(0.01, 1e6);
-    command
-        .add_option("--worlds M", given.settings.worlds,
-                    "fresh worlds in which every reported plan is flown; default 300")
-        .in_range(1, 1000000);
-    add_jobs(command, given.settings.jobs, "one per processor");
-    add_out(command, "DIR", given.out, "folder for the results; default downwash-out/study-uncertainty/");
-    add_no_cache(command, given.no_cache);
-    add_quiet(command, given.is_quiet);
-    add_json(command, given.as_json);
 }
 
 }  // namespace downwash::cli

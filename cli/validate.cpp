@@ -9,6 +9,7 @@
 #include "downwash/cli/plan_origin.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/cli/validate_command.hpp"
 #include "downwash/cli/validation.hpp"
 #include "downwash/cli/validation_files.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -20,15 +21,6 @@ namespace downwash::cli {
 namespace {
 
 constexpr std::uint64_t most_runs = 10'000'000;
-
-struct ValidateArguments {
-    std::string problem;
-    std::string plan;
-    std::optional<std::uint64_t> runs, seed, world;
-    std::optional<std::string> out;
-    int threads = default_threads();
-    bool as_json = false, is_quiet = false;
-};
 
 void check_options(const ValidateArguments& given, const Problem& problem) {
     if (given.runs && given.world) {
@@ -78,7 +70,9 @@ std::string command_for_one(const ValidateArguments& given) {
                        given.seed ? fmt::format(" --seed {}", *given.seed) : "");
 }
 
-ExitCode run(const ValidateArguments& given) {
+}  // namespace
+
+ExitCode validate(const ValidateArguments& given) {
     Interruption interruption;
     const Problem problem = read_problem(given.problem, {}, given.is_quiet ? nullptr : print_outdated);
     check_options(given, problem);
@@ -137,27 +131,6 @@ ExitCode run(const ValidateArguments& given) {
         return interruption.code();
     }
     return validation.is_valid() ? ExitCode::done : ExitCode::flight_failed;
-}
-
-}  // namespace
-
-void add_validate(Command program, Action& action) {
-    auto [command, given] =
-        add_command(program, action, "validate",
-                    "Fly a plan with an independent simulator and compare the flight with what the plan's file says; "
-                    "with --runs, fly it in many worlds of the problem's uncertainty and estimate how often it fails",
-                    run);
-    add_problem(command, given.problem);
-    add_plan(command, given.plan);
-    command.add_option("--runs N", given.runs, "fly in the worlds 1 to N of the problem's uncertainty as well");
-    command.add_option("--world I", given.world,
-                       "world I of the problem's uncertainty to fly in; default: the nominal one");
-    command.add_option("--seed N", given.seed, "seed of the random numbers; of the worlds, default: that of the plan");
-    add_out(command, "DIR", given.out,
-            "folder for validation.json, what --json prints, and the page validation.html; default: no files");
-    add_threads(command, given.threads);
-    add_quiet(command, given.is_quiet);
-    add_json(command, given.as_json);
 }
 
 }  // namespace downwash::cli

@@ -45,16 +45,16 @@ macro(downwash_component NAME WHAT)
 endmacro()
 
 list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # the package brings its own finder
-downwash_component(JUDGE "the judge of plans"
+downwash_component(JUDGE "the judge of plans, and downwash validate"
   FINDS fcl DEBIAN libfcl-dev)
-downwash_component(FITTING "fits of surface-effect models to measurements"
+downwash_component(FITTING "fits of surface-effect models to measurements, and downwash aeromap fit and compare"
   FINDS Ceres DEBIAN libceres-dev)
-downwash_component(EXPORTS "exports of runs for other programs"
+downwash_component(EXPORTS "exports of runs for other programs, and downwash export"
   FINDS GeographicLib DEBIAN libgeographiclib-dev)
 downwash_component(REPORT "pictures and pages of runs"
   FINDS fmt ZLIB DEBIAN libfmt-dev zlib1g-dev)
-downwash_component(CAMPAIGNS "campaigns and their reports"
+downwash_component(CAMPAIGNS "campaigns and studies, downwash bench and downwash study"
   FINDS fmt SQLite3 DEBIAN libfmt-dev libsqlite3-dev)
-downwash_component(CLI "the program downwash, its documentation and the tests"
-  NEEDS JUDGE FITTING EXPORTS REPORT CAMPAIGNS
+downwash_component(CLI "the program downwash and its documentation"
+  NEEDS REPORT
   FINDS CLI11 fmt DEBIAN libcli11-dev libfmt-dev)

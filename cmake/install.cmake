@@ -1,12 +1,13 @@
-# cmake --install: the program, its manual pages, completions and problems, and the package that other projects find with find_package(downwash).
+# cmake --install: the programs, their manual pages, completions and problems, and the package that other projects find with find_package(downwash).
 
 include(CMakePackageConfigHelpers)
 
 # Builds all that is installed, without tests and benchmarks.
 add_custom_target(installed)
-if(TARGET downwash)
-  add_dependencies(installed downwash)
-  install(TARGETS downwash RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+get_property(programs GLOBAL PROPERTY DOWNWASH_PROGRAMS)
+if(programs)
+  add_dependencies(installed ${programs})
+  install(TARGETS ${programs} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 if(TARGET downwash_python)
   add_dependencies(installed downwash_python)

@@ -32,6 +32,8 @@ function(downwash_optimise_little TARGET)
   target_compile_options(${TARGET} PRIVATE "$<$<CONFIG:Release>:-O1;$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>>")
 endfunction()
 
+include(cmake/precompiled.cmake)
+
 # downwash_module(NAME SOURCES ... USES modules... PRIVATE libraries... PRIVATE_HEADERS files... [INTERNAL | CONTAINS modules...]
 #                 [COLD])
 # Adds the library downwash_NAME, alias downwash::NAME. The folder's headers are installed, except those after
@@ -56,6 +58,11 @@ function(downwash_module NAME)
   target_link_libraries(downwash_${NAME} PUBLIC ${MODULE_USES} PRIVATE $<BUILD_INTERFACE:downwash_options> ${MODULE_PRIVATE})
   if(MODULE_COLD)
     downwash_optimise_little(downwash_${NAME})
+    downwash_use_precompiled(downwash_${NAME} downwash_precompiled_cold)
+  elseif("downwash_libompl" IN_LIST MODULE_PRIVATE)
+    downwash_use_precompiled(downwash_${NAME} downwash_precompiled_ompl)
+  else()
+    downwash_use_precompiled(downwash_${NAME} downwash_precompiled)
   endif()
   foreach(part IN LISTS MODULE_CONTAINS)
     target_link_libraries(downwash_${NAME} PRIVATE $<BUILD_INTERFACE:downwash_${part}>)

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <span>
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -18,13 +18,34 @@ struct ExportFormat {
     bool is_to_be_flown = false;  ///< commands for a vehicle
     bool has_rate = false;        ///< made of set-points at ExportSettings::rate_hz
     bool has_origin = false;      ///< needs ExportSettings::origin
-    std::string (*write)(const RunRecord& run, const ExportSettings& settings);
 };
 
 /// All formats for a run.
-[[nodiscard]] DOWNWASH_EXPORT std::span<const ExportFormat> export_formats();
+inline constexpr std::array export_formats{
+    ExportFormat{.name = "csv",
+                 .file_name = "setpoints.csv",
+                 .description = "set-points of the plan in the world frame, a row each",
+                 .is_to_be_flown = true,
+                 .has_rate = true},
+    ExportFormat{.name = "ros",
+                 .file_name = "trajectory.json",
+                 .description = "the same as ROS messages: trajectory_msgs/MultiDOFJointTrajectory of the vehicle and "
+                                "trajectory_msgs/JointTrajectory of the arm",
+                 .is_to_be_flown = true,
+                 .has_rate = true},
+    ExportFormat{.name = "qgc",
+                 .file_name = "mission.plan",
+                 .description = "the vehicle's way as a mission for QGroundControl; without the arm",
+                 .is_to_be_flown = true,
+                 .has_origin = true},
+    ExportFormat{.name = "vtp",
+                 .file_name = "flight.vtp",
+                 .description = "the flight as VTK polydata: the ways of vehicle and end effector with all columns"},
+    ExportFormat{.name = "vtp-scene", .file_name = "scene.vtp", .description = "the obstacles as VTK polydata"},
+    ExportFormat{.name = "glb", .file_name = "run.glb", .description = "scene and flying vehicle as animated glTF"},
+};
 
-/// A run as the bytes of a format. Equal runs give equal bytes.
+/// A run as the bytes of one of export_formats. Equal runs give equal bytes.
 /// @throws InputError if the run lacks what the format shows (plan, flight), or a setting is missing or out of range
 [[nodiscard]] DOWNWASH_EXPORT std::string exported(const RunRecord& run, const ExportFormat& format,
                                                    const ExportSettings& settings);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Private: not installed. One function for each row of export_formats().
+// Private: not installed. One function for each row of export_formats.
 
 #include <string>
 #include <vector>

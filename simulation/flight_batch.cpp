@@ -36,10 +36,12 @@ constexpr int few_lanes = lane_count / 2;
 Kernels kernels_for(Instructions instructions, const FlownLaw& flown) {
     const std::size_t law = flown.index();
     const bool is_aided = controllers::aids_of(flown).are_any();
-#ifdef DOWNWASH_HAS_AVX_KERNELS
+#ifdef DOWNWASH_HAS_AVX2_KERNEL
     if (instructions == Instructions::avx2) {
         return {simulation::avx2_kernel(law, is_aided), simulation::avx2_kernel(law, is_aided)};
     }
+#endif
+#ifdef DOWNWASH_HAS_AVX512_KERNEL
     if (instructions == Instructions::avx512) {
         return {simulation::avx512_kernel(law, is_aided), simulation::avx2_kernel(law, is_aided)};
     }
@@ -75,10 +77,11 @@ FlightKernelModel make_kernel_model(const FlightSetting& setting) {
 std::span<const Instructions> known_instructions() noexcept {
     static constexpr Instructions all[] = {Instructions::baseline, Instructions::avx2, Instructions::avx512};
     std::size_t known = 1;
-#ifdef DOWNWASH_HAS_AVX_KERNELS
-    if (__builtin_cpu_supports("avx2") != 0) {
-        known = __builtin_cpu_supports("avx512f") != 0 ? 3 : 2;
-    }
+#ifdef DOWNWASH_HAS_AVX2_KERNEL
+    known += __builtin_cpu_supports("avx2") != 0 ? 1 : 0;
+#endif
+#ifdef DOWNWASH_HAS_AVX512_KERNEL
+    known += known == 2 && __builtin_cpu_supports("avx512f") != 0 ? 1 : 0;
 #endif
     return {all, known};
 }

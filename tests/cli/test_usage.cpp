@@ -39,6 +39,24 @@ TEST_CASE("A reader that has seen enough is no error") {
     }
 }
 
+TEST_CASE("A command whose program is not there says how to build it, after its own check of the command line") {
+    const Workspace work;
+    std::filesystem::copy_file(DOWNWASH_PROGRAM, work / "downwash");
+    const auto run_alone = [&](const std::string& command) {
+        const std::string line = "'" + (work / "downwash").string() + "' " + command + " >'" + (work / "out").string() +
+                                 "' 2>'" + (work / "err").string() + "'; echo $? >'" + (work / "code").string() + "'";
+        REQUIRE(std::system(line.c_str()) == 0);
+        CHECK(read_file(work / "code") == "2\n");
+        return read_file(work / "err");
+    };
+    CHECK_THAT(run_alone("bench report somewhere"),
+               StartsWith("downwash: this command is in the program downwash-bench, which is not in") &&
+                   Contains("libsqlite3-dev"));
+    CHECK_THAT(run_alone("aeromap fit data.csv --model table"), Contains("downwash-aeromap"));
+    CHECK_THAT(run_alone("validate"), Contains("PROBLEM is required"));
+    CHECK_THAT(run_alone("study no-such-study"), Contains("there is no command 'study no-such-study'"));
+}
+
 TEST_CASE("Bad usage ends with 2 and says why on standard error alone") {
     const Workspace work;
     write_file(work / "plan.json", "{}");

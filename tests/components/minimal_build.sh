@@ -27,6 +27,16 @@ for component in JUDGE:libfcl-dev FITTING:libceres-dev EXPORTS:libgeographiclib-
         exit 1
     }
 done
+# With the packages of `./dev run` the program is built, without the optional ones.
+cmake -S "$root" -B "$build/run" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_DISABLE_FIND_PACKAGE_{fcl,Ceres,GeographicLib,SQLite3}=ON >"$build/log" 2>&1 || {
+    cat "$build/log"
+    exit 1
+}
+if left=$(grep -E 'Left out: (the program|pictures)' "$build/log"); then
+    echo "CMake leaves out what ./dev run builds: $left"
+    exit 1
+fi
 [[ ${1:-} != --configure ]] || exit 0
 
 cmake --build "$build" --parallel "${JOBS:-1}"

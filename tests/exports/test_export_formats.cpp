@@ -21,7 +21,7 @@ using test::record;
 namespace {
 
 std::string written(const char* format, const RunRecord& run = record(), const ExportSettings& settings = {}) {
-    for (const ExportFormat& one : export_formats()) {
+    for (const ExportFormat& one : export_formats) {
         if (one.name == format) {
             return exported(run, one, settings);
         }
@@ -286,7 +286,7 @@ TEST_CASE("a run without a plan has nothing to fly, but a scene, and equal runs 
     CHECK_THROWS_AS(written("qgc", none, at(47, 8, 0)), InputError);
     CHECK_FALSE(written("vtp-scene", none).empty());
     CHECK(written("glb", none).substr(0, 4) == "glTF");
-    for (const ExportFormat& format : export_formats()) {
+    for (const ExportFormat& format : export_formats) {
         CAPTURE(format.name);
         CHECK(exported(record(), format, at(47, 8, 0)) == exported(record(), format, at(47, 8, 0)));
     }

@@ -44,7 +44,7 @@ class RunFolder {
 void export_run(const RunRecord& run) {
     ExportSettings settings;
     settings.origin = GeodeticOrigin{47, 8, 100, 30};
-    for (const ExportFormat& format : export_formats()) {
+    for (const ExportFormat& format : export_formats) {
         try {
             if (!format.has_rate) {
                 static_cast<void>(exported(run, format, settings));

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/cli/command_line.hpp"
+
+namespace downwash::cli {
+
+/// What `export` is asked for.
+struct ExportArguments {
+    std::string folder;
+    std::string format;
+    std::optional<std::string> out;
+    std::optional<double> rate_hz;
+    std::vector<double> origin;
+    std::optional<double> bearing_deg;
+    bool anyway = false;
+};
+
+/// Adds `export`. @param run what it does; null in a program that leaves it to downwash-export
+void add_export(Command program, Action& action, ExitCode (*run)(const ExportArguments&));
+
+/// The command of downwash-export.
+ExitCode export_run(const ExportArguments& given);
+
+}  // namespace downwash::cli
