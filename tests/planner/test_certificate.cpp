@@ -12,9 +12,11 @@
 #include "../support/test_problem.hpp"
 #include "downwash/planner/certificate.hpp"
 #include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/remedies.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/planner/world_flights.hpp"
+#include "downwash/planner/worlds.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 

@@ -8,6 +8,7 @@
 #include "../support/error_of.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
+#include "downwash/planner/direct_flight.hpp"
 #include "downwash/planner/flight_search.hpp"
 #include "downwash/planner/solve.hpp"
 
