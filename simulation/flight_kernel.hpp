@@ -68,8 +68,8 @@ struct FlightKernelModel {
 /// until so many ticks have passed. Every lane's numbers are those of simulation::tick() to the last bit.
 using FlightKernel = void (*)(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks);
 
-// For each set of instructions the kernel of a control law, by its number in FlownLaw, and whether it flies Aided. Those
-// that are left out of a build are not defined.
+// For each set of instructions the kernel of a control law, by its number in FlownLaw, and whether it flies Aided.
+// Those that are left out of a build are not defined.
 [[nodiscard]] FlightKernel baseline_kernel(std::size_t law, bool is_aided);
 [[nodiscard]] FlightKernel avx2_kernel(std::size_t law, bool is_aided);
 [[nodiscard]] FlightKernel avx512_kernel(std::size_t law, bool is_aided);

@@ -7,8 +7,8 @@
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/simulation/robot.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
-#include "downwash/simulation/world_parameters.hpp"
 #include "downwash/simulation/world_numbers.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash {
 namespace {
