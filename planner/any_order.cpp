@@ -51,7 +51,7 @@ class AnyOrder {
     [[nodiscard]] bool attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only);
     [[nodiscard]] SolveOptions options_of_attempt(bool is_first_only, const PlaceOrder& order);
     void learn_from_failure(const PlaceOrder& order, const Found& failed);
-    void take_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
+    void keep_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
                         std::uint64_t iterations_before);
     void explain();
     [[nodiscard]] double energy_with(std::size_t target) const;
@@ -114,7 +114,7 @@ void AnyOrder::search() {
     }
 }
 
-/// Of the limits, but no crumbs.
+/// A share of what is left of the limits, at least a tenth of all.
 SearchBudget AnyOrder::share_of_left(double share) const {
     constexpr double least = 0.1;
     return left_.part(share).at_least(SearchBudget(problem_.planner).part(least)).at_most(left_);
@@ -184,7 +184,7 @@ bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool
     if (!is_found) {
         learn_from_failure(order, found);
     }
-    take_if_better(order, std::move(result), begun_at_s, iterations);
+    keep_if_better(order, std::move(result), begun_at_s, iterations);
     return is_found;
 }
 
@@ -243,7 +243,7 @@ void AnyOrder::learn_from_failure(const PlaceOrder& order, const Found& failed) 
 
 /// Takes a flight as the solution if it visits more than the present one, or as many for less; where there is none yet,
 /// a part of one that comes farther.
-void AnyOrder::take_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
+void AnyOrder::keep_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
                               std::uint64_t iterations_before) {
     Found& found = result.found;
     const bool is_solved = found.status == Status::solved;

@@ -12,16 +12,16 @@
 namespace downwash::planning {
 namespace {
 
-/// A way to brake. Distances are those of a constant deceleration, times a factor.
-struct Way {
+/// One way to brake. Distances are those of a constant deceleration, times a factor.
+struct Maneuver {
     double harder;   ///< limits of acceleration and jerk, over those of the problem
     double farther;  ///< distance
     double aside_m;  ///< upwards
 };
 
 /// The gentle ones first, then those that get out of the way of something.
-constexpr Way ways[] = {{1, 1.3, 0},   {2, 1.2, 0}, {1, 1.3, -0.3}, {1, 1.3, 0.3},  {2, 1.2, -0.3},
-                        {2, 1.2, 0.3}, {3, 1.1, 0}, {2, 2.5, 0},    {2, 1.2, -0.8}, {2, 1.2, 0.8}};
+constexpr Maneuver maneuvers[] = {{1, 1.3, 0},   {2, 1.2, 0}, {1, 1.3, -0.3}, {1, 1.3, 0.3},  {2, 1.2, -0.3},
+                                  {2, 1.2, 0.3}, {3, 1.1, 0}, {2, 2.5, 0},    {2, 1.2, -0.8}, {2, 1.2, 0.8}};
 
 MotionLimits harder_limits(MotionLimits limits, double times) {
     limits.max_speed_m_s *= 2;  // a vehicle is as fast as it is
@@ -33,13 +33,13 @@ MotionLimits harder_limits(MotionLimits limits, double times) {
 }
 
 /// Where a reference comes to rest.
-Configuration rest_of(const ReferencePoint& from, const MotionLimits& limits, const Way& way) {
+Configuration rest_of(const ReferencePoint& from, const MotionLimits& limits, const Maneuver& maneuver) {
     const double speed_m_s = std::hypot(from.velocity[0], from.velocity[1]);
     const MotionLimits straight = limits_along(limits, from.velocity[0], from.velocity[1]);
-    const double time_s = way.farther * speed_m_s / straight.max_acceleration_m_s2;
-    const double arm_time_s = way.farther * std::abs(from.velocity[2]) / limits.max_arm_acceleration_rad_s2;
+    const double time_s = maneuver.farther * speed_m_s / straight.max_acceleration_m_s2;
+    const double arm_time_s = maneuver.farther * std::abs(from.velocity[2]) / limits.max_arm_acceleration_rad_s2;
     return {from.position[0] + 0.5 * time_s * from.velocity[0],
-            from.position[1] + 0.5 * time_s * from.velocity[1] + way.aside_m,
+            from.position[1] + 0.5 * time_s * from.velocity[1] + maneuver.aside_m,
             from.position[2] + 0.5 * arm_time_s * from.velocity[2]};
 }
 
@@ -97,9 +97,9 @@ Bounds Braking::places_on(std::span<const Try> tries, const Start& from) const {
 std::vector<Braking::Try> Braking::all_tries(const ReferencePoint& from) const {
     const double tick_s = model_->tick().tick_s;
     std::vector<Try> tries;
-    for (const Way& way : ways) {
-        const MotionLimits limits = harder_limits(problem_.motion, way.harder);
-        const Configuration rest = rest_of(from, limits, way);
+    for (const Maneuver& maneuver : maneuvers) {
+        const MotionLimits limits = harder_limits(problem_.motion, maneuver.harder);
+        const Configuration rest = rest_of(from, limits, maneuver);
         if (is_inside(problem_.bounds, rest)) {
             Plan plan{{{0, from}}, tick_s};
             plan.reference.push_back({shortest_ticks(from, at_rest(rest), limits, tick_s), at_rest(rest)});
@@ -188,7 +188,7 @@ void Braking::fly(std::span<Try> tries, const std::vector<FlightState>& fleet, s
         const FlightJob& job = jobs[i];
         const bool is_nominal = job.world == worlds_.data();
         const Rejection rejection = job.rejection();
-        // Where the vehicle is not quite as believed it may still be settling.
+        // In another world the vehicle may still be settling.
         const bool fails = is_nominal ? rejection != Rejection::none || min_clearance_m(job) < margin_m
                                       : rejection != Rejection::none && rejection != Rejection::goal_missed;
         tries[i / (last_world - first_world)].failures += fails ? 1 : 0;
@@ -218,11 +218,11 @@ SafeStops StopFinder::along(const Plan& plan, const StopCondition& is_over) {
     for (const std::int64_t tick : ticks) {
         moments.reference.push_back({tick, plan.at(tick)});
     }
-    const FlightState believed = start_state(*model_, problem_.start);
-    std::vector<FlightJob> fleet{{believed, {}, 0, &model_->nominal_world()}};
+    const FlightState nominal = start_state(*model_, problem_.start);
+    std::vector<FlightJob> fleet{{nominal, {}, 0, &model_->nominal_world()}};
     const std::vector<std::optional<FlightState>> starts = flights_.starts_in(worlds_);
     for (std::size_t i = 0; i < worlds_.size(); ++i) {
-        fleet.push_back({starts[i].value_or(believed), {}, 0, &worlds_[i]});
+        fleet.push_back({starts[i].value_or(nominal), {}, 0, &worlds_[i]});
     }
     SafeStops stops;
     std::int64_t without = 0;

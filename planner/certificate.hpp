@@ -20,7 +20,8 @@ struct WorldSample {
     std::uint64_t world = 0;  ///< index, as of draw_world() with the problem's seed
     Outcome outcome = Outcome::ok;
     double min_clearance_m = 0;  ///< up to where the flight ended; infinity without obstacles
-    std::size_t goal = 0;  ///< of a failed flight: to which it was on the way, or which it missed; from 0. Not in files
+    std::size_t goal =
+        0;  ///< number from 0 of the goal that a failed flight was on the way to, or missed. Not in files
 };
 
 /// What flights of a plan in worlds that no search has seen say about it.
@@ -28,13 +29,13 @@ struct Certificate {
     bool is_given = false;  ///< the failure probability is at most max_failure_probability, with this confidence
     std::uint64_t worlds = 0;
     std::uint64_t failures = 0;
-    /// Of all worlds, with the confidence below, by these flights alone: only is_given counts that the test has stages
-    /// and that several plans asked.
+    /// The share of all worlds in which the plan fails, with the confidence below, by these flights alone: only
+    /// is_given counts that the test has stages and that several plans asked.
     FailureInterval failure_probability;
     double max_failure_probability = 0;
     double confidence = 0;
     std::uint64_t attempts = 0;                   ///< plans of the search that asked for one; they share the error
-    std::map<std::string, std::uint64_t> causes;  ///< of the failures, by the name of their outcome
+    std::map<std::string, std::uint64_t> causes;  ///< failures by the name of their outcome
     struct {
         double p01, p10, p50;
     } clearance_m{0, 0, 0};          ///< quantiles of the least clearance of each flight

@@ -69,7 +69,7 @@ class FlightSearch {
     }
     [[nodiscard]] bool is_certified(const Plan& plan, double cost);
     [[nodiscard]] bool can_stop(const Plan& plan);
-    [[nodiscard]] std::vector<Counterexample> lessons();
+    [[nodiscard]] std::vector<Counterexample> new_counterexamples();
     void accept(const Plan& plan, double cost, std::uint64_t iteration);
     /// A plan that comes near the goal only.
     struct Approach {
@@ -88,17 +88,17 @@ class FlightSearch {
     SearchResult result_;      ///< with the best plan so far
     SearchClock clock_;
     ProblemWorlds* worlds_;
-    StopFinder* stop_finder_;  ///< of plans to the last goal
+    StopFinder* stop_finder_;  ///< asked for plans to the last goal
     SearchWorlds search_worlds_;
     SearchTask task_;
     FlightState start_;                            ///< where the whole flight begins
     std::optional<DirectFlight> flight_;           ///< made last
     std::optional<Obstruction> discarded_;         ///< what discarded the last plan that was
-    std::optional<Certificate> certificate_;       ///< of the plan that was executed last
+    std::optional<Certificate> certificate_;       ///< certificate of the plan that was executed last
     std::optional<SafeStops> stops_;               ///< along that plan
     std::vector<Counterexample> counterexamples_;  ///< in which that plan failed
     std::optional<std::size_t> weakest_;           ///< part of that plan
-    /// Of the plans without a certificate the one with the lowest bound of its failure probability: one that was
+    /// The plan without a certificate that has the lowest bound of its failure probability: one that was
     /// interrupted after a few worlds says little.
     struct Uncertified {
         Plan plan;
@@ -208,9 +208,9 @@ bool FlightSearch::is_certified(const Plan& plan, double cost) {
     return false;
 }
 
-/// What the search may learn from a plan that did not survive, between two of its rounds. That it was the fault of an
-/// earlier part ends the search, unless it has shown that these parts can be good enough.
-std::vector<Counterexample> FlightSearch::lessons() {
+/// Worlds in which the last plan failed, for the search to learn from between two of its rounds. If an earlier part of
+/// the flight is to blame, the search ends, unless it has shown that these parts can be good enough.
+std::vector<Counterexample> FlightSearch::new_counterexamples() {
     const std::optional<std::size_t> weakest = std::exchange(weakest_, std::nullopt);
     if (weakest && *weakest < before_.goals.size() && !has_plan()) {
         result_.weak_goal = weakest;
@@ -267,8 +267,8 @@ SearchResult FlightSearch::result(std::uint64_t iterations, const FlightStatisti
     return std::move(result_);
 }
 
-/// Of a search that found no plan that counts: what it came to, and what stood before the goal. If it had a plan, that
-/// is what became of its execution.
+/// Reports what a search without a plan that counts came to, and what stood before the goal. If it had a plan, that is
+/// what became of its execution.
 void FlightSearch::report_failure(const FlightStatistics& statistics, const Approach& nearest) {
     Found& found = result_.found;
     found.obstruction = discarded_ ? discarded_ : statistics.obstruction;
@@ -320,7 +320,7 @@ SearchResult FlightSearch::run_tree() {
     planner.set_hooks({[&](const Candidate& candidate) {
                            return survives_execution(plan_through(candidate.moments, tick_s), candidate.cost);
                        },
-                       [&] { return lessons(); },
+                       [&] { return new_counterexamples(); },
                        [&](const Candidate& candidate) {
                            accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
                        }});

@@ -82,14 +82,14 @@ void GoalSequence::end_round() {
     constexpr std::uint64_t min_iterations = 50;
     constexpr double min_s = 0.1;
     if (number_ == 1) {
-        take_farther();
+        keep_if_farther();
         is_last_ = options_.stop_at_first_solution || !has_way();
         round_work_ = record_;
         round_work_.iterations = std::max(round_work_.iterations, min_iterations);
         round_work_.wall_s = std::max(round_work_.wall_s, min_s);
         whole_.part(min_round_ / 2).charge(round_work_);
     } else if (round_.way.status == Status::solved && is_better(round_.way)) {
-        take(std::move(round_));
+        keep(std::move(round_));
     }
     is_done_ = is_last_ || is_over();
     if (is_done_) {
@@ -126,7 +126,7 @@ SearchBudget GoalSequence::budget_of(std::size_t part) const {
 
 /// Goes back to search the way to some goal anew. False if there is no time for it.
 bool GoalSequence::go_back(std::size_t part) {
-    take_farther();
+    keep_if_farther();
     round_.courses.resize(part + 1);
     round_.part_costs.resize(part);
     round_.way.plan = part > 0 ? std::optional(round_.courses.back().plan) : std::nullopt;
@@ -234,7 +234,7 @@ SolveOptions GoalSequence::options_of_part() {
     return inner;
 }
 
-/// Of what is left of a round, for a part: half of a round is shared equally, half by where it paid.
+/// The share of what is left of a round for a part: half of a round is shared equally, half by where it paid.
 double GoalSequence::share(std::size_t part) const {
     const double all_gains = std::accumulate(gains_.begin(), gains_.end(), 0.0);
     const auto weight = [&](std::size_t i) {
@@ -248,7 +248,8 @@ double GoalSequence::share(std::size_t part) const {
     return weight(part) / parts_left;
 }
 
-/// Than the best way so far: one that can be left for a hover for clearly more of its time or, else, a cheaper one.
+/// Whether a way is better than the best so far: it can be left for a hover for clearly more of its time or, else,
+/// costs less.
 bool GoalSequence::is_better(const Found& way) const {
     if (way.stops && best_.stops) {
         if (is_clearly_worse(*way.stops, *best_.stops) || is_clearly_worse(*best_.stops, *way.stops)) {
@@ -272,18 +273,18 @@ void GoalSequence::note_improvements(const Course& before, const SearchRecord& l
     }
 }
 
-/// Until there is a whole way: takes one that goes through more goals, or as many.
-void GoalSequence::take_farther() {
+/// Until there is a whole way: keeps one that goes through more goals, or as many.
+void GoalSequence::keep_if_farther() {
     const bool is_farther = round_.part_costs.size() > part_costs_.size() ||
                             (round_.part_costs.size() == part_costs_.size() &&
                              (!best_.plan || (round_.way.certificate && !best_.certificate)));
     if (!has_way() && is_farther) {
-        take(round_);
+        keep(round_);
     }
 }
 
-/// Takes a way as the best one.
-void GoalSequence::take(Round round) {
+/// Keeps a way as the best one.
+void GoalSequence::keep(Round round) {
     gains_.resize(goals_.size());
     for (std::size_t i = 0; has_way() && i < goals_.size(); ++i) {
         gains_[i] = std::max(0.0, part_costs_[i] - round.part_costs[i]);

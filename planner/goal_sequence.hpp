@@ -53,7 +53,7 @@ class DOWNWASH_EXPORT GoalSequence {
         SearchBudget left;
         std::vector<Course> courses;     ///< before each part, the one that is searched for included
         Found way;                       ///< as far as it has come
-        std::vector<double> part_costs;  ///< of the parts that were found
+        std::vector<double> part_costs;  ///< costs of the parts that were found
     };
 
     [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
@@ -70,8 +70,8 @@ class DOWNWASH_EXPORT GoalSequence {
     [[nodiscard]] bool is_better(const Found& way) const;
     void note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,
                            std::uint64_t iterations_before);
-    void take_farther();
-    void take(Round round);
+    void keep_if_farther();
+    void keep(Round round);
 
     const Problem& problem_;
     const PlannerModel& model_;
@@ -82,8 +82,8 @@ class DOWNWASH_EXPORT GoalSequence {
     std::vector<std::uint32_t> given_up_;  ///< how many of these took too long
     SearchBudget whole_;
     SearchBudget left_;
-    SearchBudget part_budget_;  ///< of the search that is going on
-    std::size_t number_ = 1;    ///< of the round that is going on
+    SearchBudget part_budget_;  ///< budget of the search that is going on
+    std::size_t number_ = 1;    ///< number of the round that is going on
     bool is_last_ = false;      ///< there will be no other round
     bool is_done_ = false;
     SearchRecord round_work_;  ///< what the round that is going on may take
@@ -91,7 +91,7 @@ class DOWNWASH_EXPORT GoalSequence {
     Found best_;               ///< the best way so far or, without one, the farthest
     SearchRecord record_;
     std::uint64_t attempts_;          ///< plans that asked for a certificate
-    std::vector<double> part_costs_;  ///< of the best way
+    std::vector<double> part_costs_;  ///< costs of the parts of the best way
     std::vector<double> gains_;       ///< by how much each part became cheaper when the best way last did
     double told_cost_ = std::numeric_limits<double>::infinity();  ///< cost of the best way that the caller knows
 };

@@ -116,7 +116,7 @@ LegTable::LegTable(const Problem& problem, const PlannerModel& model, const Solv
 
 LegTable::~LegTable() = default;
 
-/// Of legs that are not flown.
+/// Sets the lower bounds of the legs from a place that are not flown.
 void LegTable::bound_legs_from(std::size_t from) {
     const Configuration at = from == estimates_.outside() ? problem_.start.configuration() : places_[from].at;
     for (std::size_t to = 0; to <= estimates_.outside(); ++to) {

@@ -31,7 +31,7 @@ class DOWNWASH_EXPORT LegTable {
     [[nodiscard]] const LegCosts& estimates() const noexcept { return estimates_; }
     /// The cheapest flights of all passes alone: other legs are infinite.
     [[nodiscard]] LegCosts flown_costs() const { return costs_or({}); }
-    /// The same with lower bounds of the others.
+    /// The cheapest flights of all passes, with lower bounds of the legs that have none.
     [[nodiscard]] LegCosts lower_bounds() const { return costs_or(std::nullopt); }
     /// Begins a pass: legs are to be flown anew, those that were not found are not.
     void begin_pass();
@@ -41,8 +41,9 @@ class DOWNWASH_EXPORT LegTable {
     /// Legs that were flown.
     [[nodiscard]] std::uint64_t legs_flown() const noexcept { return legs_flown_; }
 
-    /// Searches a leg that is not flown yet in the nominal world, if a leg to its beginning is. What is not found in
-    /// two searches is infinite from then on.
+    /// Searches for a flight along a leg in the nominal world. The vehicle starts as it hovers after the first leg to
+    /// the place where this leg begins; without such a leg nothing is searched. After two failed searches the leg
+    /// counts as infinite.
     /// @param budget of the search, doubled for each one that failed before
     /// @return the work of the search; whether there is a flight, is_known() tells
     SearchRecord fly(std::size_t from, std::size_t to, const SearchBudget& budget);
@@ -82,7 +83,7 @@ class DOWNWASH_EXPORT LegTable {
     const Problem& problem_;
     const PlannerModel& model_;
     const SolveOptions& options_;
-    std::vector<std::unique_ptr<Bounds>> bounds_;  ///< of the ways to each place
+    std::vector<std::unique_ptr<Bounds>> bounds_;  ///< lower bounds of the ways to each place
     std::vector<Place> places_;                    ///< the last one is the place to return to, if there is one
     Course start_;
     std::vector<LegState> legs_;

@@ -25,7 +25,7 @@ class DOWNWASH_EXPORT OrderComparison {
     /// The best order by lower bounds and the legs that were flown.
     [[nodiscard]] PlaceOrder likely() const { return best_order(limited(table_.estimates())); }
 
-    double energy_limit_j;  ///< of the legs of an order together: what they say of a whole flight is not exact
+    double energy_limit_j;  ///< budget for the legs of an order together: what they say of a whole flight is not exact
 
  private:
     /// With the limit of energy.

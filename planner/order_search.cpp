@@ -15,7 +15,7 @@ struct Label {
     double cost, energy_j;
     std::size_t place;
     std::size_t before;  ///< label of the way to the place before
-    std::size_t count;   ///< of places
+    std::size_t count;   ///< number of places
 };
 
 constexpr std::size_t no_label = static_cast<std::size_t>(-1);
@@ -141,7 +141,7 @@ class LocalSearch {
         return places;
     }
 
-    bool take_if_better(PlaceOrder& order, std::vector<std::size_t> places) const {
+    bool keep_if_better(PlaceOrder& order, std::vector<std::size_t> places) const {
         PlaceOrder changed = order_of(costs_, std::move(places));
         if (!is_better(changed, order)) {
             return false;
@@ -168,7 +168,7 @@ class LocalSearch {
             for (std::size_t at = 0; at <= order.places.size() && !is_visited[costs_.target_of(place)]; ++at) {
                 std::vector<std::size_t> places = order.places;
                 places.insert(places.begin() + static_cast<std::ptrdiff_t>(at), place);
-                take_if_better(best, std::move(places));
+                keep_if_better(best, std::move(places));
             }
         }
         const bool is_longer = best.places.size() > order.places.size();
@@ -188,7 +188,7 @@ class LocalSearch {
                 for (std::size_t to = 0; to <= others.size() && is_free && place != order.places[at]; ++to) {
                     std::vector<std::size_t> places = others;
                     places.insert(places.begin() + static_cast<std::ptrdiff_t>(to), place);
-                    if (take_if_better(order, std::move(places))) {
+                    if (keep_if_better(order, std::move(places))) {
                         return true;
                     }
                 }
@@ -205,7 +205,7 @@ class LocalSearch {
                 for (std::size_t to = 0; to + length <= count; ++to) {
                     const bool is_far = length > 3 && to != from;
                     for (const bool is_reversed : {false, true}) {
-                        if (!is_far && take_if_better(order, moved(order.places, from, length, to, is_reversed))) {
+                        if (!is_far && keep_if_better(order, moved(order.places, from, length, to, is_reversed))) {
                             return true;
                         }
                     }

@@ -30,7 +30,7 @@ class DOWNWASH_EXPORT LegCosts {
         return legs_[from * (places() + 1) + to];
     }
 
-    double energy_budget_j = std::numeric_limits<double>::infinity();  ///< of all legs together
+    double energy_budget_j = std::numeric_limits<double>::infinity();  ///< energy that all legs together may take
 
  private:
     std::vector<std::size_t> target_of_;

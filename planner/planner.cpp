@@ -39,7 +39,7 @@ std::vector<Configuration> carrying_places(const std::vector<TreeNode>& tree, st
     return places;
 }
 
-/// The same limits as in PlannerSettings. No time at all is one, too: then there is only the stop.
+/// Checks the limits of PlannerSettings. No time at all is allowed, too: then there is only the stop.
 void throw_if_out_of_range(const ReplanOptions& options) {
     constexpr double most_s = 1e6;
     constexpr std::uint64_t most_iterations = 1'000'000'000'000'000;
@@ -146,7 +146,7 @@ void Planner::publish(Call& call, Answer answer) {
 }
 
 /// Checks the changed problem before anything becomes another.
-void Planner::take_up(const SceneChange& change) {
+void Planner::apply(const SceneChange& change) {
     if (change.put.empty() && change.removed.empty() && !change.goal) {
         return;
     }
@@ -213,7 +213,7 @@ bool Planner::plans_in_worlds() const {
     return problem_.uncertainty && problem_.planner.variant == Variant::mp_arm_ada;
 }
 
-/// Those of a search, which are chosen so that dangers come early; none where everything is as believed.
+/// The worlds of a search, which are chosen so that dangers come early; none without an uncertainty.
 std::vector<FlownWorld> Planner::worlds() const {
     return plans_in_worlds() ? planning::search_worlds(problem_) : std::vector<FlownWorld>{};
 }
@@ -253,7 +253,7 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
     if (!is_finite(start)) {
         throw_input_error("has a number that is not finite: expected finite ones", "start");
     }
-    take_up(change);
+    apply(change);
     {
         const std::scoped_lock lock(mutex_);
         latest_.reset();

@@ -18,7 +18,7 @@
 
 namespace downwash {
 
-/// What of a problem is another since the last plan.
+/// What has changed in a problem since the last plan.
 struct SceneChange {
     std::vector<Obstacle> put;         ///< new ones; one with a name takes the place of the obstacle of that name
     std::vector<std::string> removed;  ///< names of obstacles that are gone
@@ -43,9 +43,9 @@ struct Answer {
     /// From the start on, its first knot at tick 0. Of `none` it is what is left of the last plan where every way to
     /// brake leaves the bounds.
     Plan plan;
-    double cost = 0;  ///< of the flight with direct aerodynamics, by the problem's objective; `keep` and `follow`
+    double cost = 0;  ///< cost of the flight with direct aerodynamics, by the problem's objective; `keep` and `follow`
     double after_wall_s = 0;           ///< since replan() was called
-    std::optional<Solution> solution;  ///< of the search; `follow` only
+    std::optional<Solution> solution;  ///< what the search found; `follow` only
 };
 
 /// How to replan. Its functions must not throw.
@@ -101,9 +101,9 @@ class DOWNWASH_EXPORT Planner {
     /// The problem as it is now: with all changes, from the last start to the goals that are left.
     [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
     [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
-    /// The same, to keep: a change of the scene makes another one.
+    /// The model, to keep: a change of the scene makes another one.
     [[nodiscard]] std::shared_ptr<const FlightModel> shared_model() const noexcept { return model_; }
-    /// Of the scene as it was when a map was last needed; nullptr before.
+    /// The map of the scene as it was when one was last needed; nullptr before.
     [[nodiscard]] const AeroMap* map() const noexcept { return map_.get(); }
     /// The last plan to the goal; empty before there is one.
     [[nodiscard]] const std::optional<Plan>& plan() const noexcept { return plan_; }
@@ -111,7 +111,7 @@ class DOWNWASH_EXPORT Planner {
  private:
     struct Call;
 
-    void take_up(const SceneChange& change);
+    void apply(const SceneChange& change);
     void drop_visited_goals(std::int64_t tick);
     [[nodiscard]] bool plans_in_worlds() const;
     [[nodiscard]] std::vector<FlownWorld> worlds() const;
@@ -125,13 +125,13 @@ class DOWNWASH_EXPORT Planner {
     Problem problem_;
     SolveOptions options_;
     std::shared_ptr<const FlightModel> model_;
-    std::shared_ptr<const AeroMap> map_;   ///< of the scene as it is, once it was needed
+    std::shared_ptr<const AeroMap> map_;   ///< map of the scene as it is, once it was needed
     std::vector<Scene::Bounds> unmapped_;  ///< changes that the map does not know yet
     std::optional<Plan> plan_;
     std::vector<Configuration> places_;  ///< that carried the tree of the last search
-    std::uint32_t searches_ = 0;         ///< of replan() so far
+    std::uint32_t searches_ = 0;         ///< searches of replan() so far
     Solution solution_;
-    mutable std::mutex mutex_;  ///< of latest_
+    mutable std::mutex mutex_;  ///< guards latest_
     std::optional<Answer> latest_;
 };
 

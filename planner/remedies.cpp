@@ -77,7 +77,7 @@ void stiffen(PlanarLyapunov& law) {
     }
 }
 
-/// Of another law there is nothing to say.
+/// Other laws stay as they are.
 template <class Law>
 void stiffen(Law& /*law*/) {}
 
@@ -106,7 +106,7 @@ void know_better(Problem& problem) {
 struct Change {
     std::string_view name;
     void (*make)(Problem&);
-    std::string_view name_of_several = name;  ///< of several goals
+    std::string_view name_of_several = name;  ///< name where there are several goals
 };
 
 constexpr Change changes[] = {

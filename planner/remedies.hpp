@@ -13,12 +13,13 @@ namespace downwash {
 
 /// A change of a problem for which a search found no certified plan, and what came of trying it.
 struct Remedy {
-    std::string change;                      ///< in words, for example "the goal 0.2 m lower"
-    std::string error;                       ///< why the changed problem cannot be planned; empty if it can
-    bool helps = false;                      ///< a plan got its certificate
-    std::optional<Certificate> certificate;  ///< of that plan or, without one, of the plan that failed least
-    double cost = 0;                         ///< of that plan, in the objective's unit
-    double wall_s = 0;                       ///< of the search
+    std::string change;  ///< in words, for example "the goal 0.2 m lower"
+    std::string error;   ///< why the changed problem cannot be planned; empty if it can
+    bool helps = false;  ///< a plan got its certificate
+    std::optional<Certificate>
+        certificate;    ///< certificate of that plan or, without one, of the plan that failed least
+    double cost = 0;    ///< cost of that plan, in the objective's unit
+    double wall_s = 0;  ///< time that the search took [s]
 };
 
 /// Tries what may help where a search found no certified plan: another place or tolerance of the goal, a larger margin,

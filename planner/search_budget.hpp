@@ -82,7 +82,7 @@ class SearchBudget {
         settings.time_limit_s = std::isfinite(time_s_) ? std::optional(std::max(min_s, time_s_)) : std::nullopt;
     }
 
-    /// Of a search that found nothing in this budget: it may have ended before, and more of it would help no more.
+    /// Charges a search that found nothing with the whole budget: it may have ended before, and more would not help.
     void charge(SearchRecord& work) const {
         if (iterations_) {
             work.iterations = std::max(work.iterations, *iterations_);

@@ -30,7 +30,7 @@ std::shared_ptr<const AeroMap> map_for(const Problem& problem, const FlightModel
                                         [&options] { return options.stop.stop_requested(); });
 }
 
-/// Of a plan that was made for the nominal world alone, what becomes of it in others.
+/// What becomes in other worlds of a plan that was made for the nominal one alone.
 Certificate compared_in_worlds(const Problem& problem, const std::shared_ptr<const FlightModel>& model,
                                const Plan& plan, const SolveOptions& options) {
     const StopCondition is_stopped = [&options] { return options.stop.stop_requested(); };

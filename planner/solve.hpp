@@ -15,7 +15,7 @@ namespace downwash {
 /// nor set.
 [[nodiscard]] DOWNWASH_EXPORT Solution solve(const PlannableProblem& plannable, const SolveOptions& options = {});
 
-/// The same for a problem that is checked first.
+/// Plans for a problem that is checked first.
 /// @throws InputError with every error when the problem cannot be planned
 [[nodiscard]] DOWNWASH_EXPORT Solution solve(const Problem& problem, const SolveOptions& options = {});
 

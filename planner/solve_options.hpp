@@ -20,11 +20,11 @@ struct Progress {
     std::uint64_t iterations = 0;
     std::uint64_t nodes = 0;
     std::uint64_t rejected = 0;       ///< edges rejected so far, for any reason
-    std::optional<double> best_cost;  ///< of the whole way; empty before the first solution
+    std::optional<double> best_cost;  ///< cost of the best whole way; empty before the first solution
     std::size_t goal = 1;             ///< the goal to which a way is searched, from 1
     std::size_t goals = 1;            ///< how many there are
-    std::size_t round = 1;            ///< of several goals: of searches for a whole way through them, from 1
-    /// Of the plan that is being flown in worlds: how many so far, and in how many it failed. Empty at other times.
+    std::size_t round = 1;            ///< number of the search for a whole way through several goals, from 1
+    /// Worlds in which a plan was flown so far, while it is certified, and in how many it failed. Empty at other times.
     std::optional<std::uint64_t> worlds;
     std::uint64_t failures = 0;
 };
@@ -33,7 +33,7 @@ struct Progress {
 struct FoundPlan {
     const Plan& plan;                  ///< through all goals; valid during the call
     double cost = 0;                   ///< by the planner's own model
-    std::optional<double> flown_cost;  ///< of its flight with direct aerodynamics; mp-arm-ada only
+    std::optional<double> flown_cost;  ///< cost of its flight with direct aerodynamics; mp-arm-ada only
 };
 
 /// How a program takes part in a search. Its functions must not throw.

@@ -70,8 +70,8 @@ FlightPool& WorldFlights::pool(std::size_t goal) {
 }
 
 std::vector<std::optional<FlightState>> WorldFlights::starts_in(std::span<const FlownWorld> worlds) {
-    const FlightState believed = start_state(*model_, problem_.start);
-    std::vector<std::optional<FlightState>> starts(worlds.size(), believed);
+    const FlightState nominal = start_state(*model_, problem_.start);
+    std::vector<std::optional<FlightState>> starts(worlds.size(), nominal);
     if (is_at_rest(problem_.start)) {
         const ReferencePoint here = at_rest(problem_.start.configuration());
         const double tick_s = model_->tick().tick_s;
@@ -81,8 +81,8 @@ std::vector<std::optional<FlightState>> WorldFlights::starts_in(std::span<const 
         std::vector<FlightJob> jobs;
         for (const FlownWorld& world : worlds) {
             quiet.push_back(without_noise(world));
-            FlightJob job{believed, {{hover}}, 0, &quiet.back()};
-            job.start.world = memory_at_start(quiet.back(), believed.plant);
+            FlightJob job{nominal, {{hover}}, 0, &quiet.back()};
+            job.start.world = memory_at_start(quiet.back(), nominal.plant);
             jobs.push_back(std::move(job));
         }
         pool(0).fly(jobs);

@@ -18,7 +18,7 @@ namespace downwash {
 struct WorldFlight {
     Rejection rejection = Rejection::none;  ///< `unstable` also for a vehicle that does not stay at its start
     double min_clearance_m = 0;             ///< up to where the flight ended, to min_clearance_error_m
-    std::size_t goal = 0;                   ///< of a failed flight: to which it was on the way, or which it missed
+    std::size_t goal = 0;                   ///< number of the goal that a failed flight was on the way to, or missed
 };
 
 /// Flies whole plans of a problem in its worlds, from the start through all goals, through the aero map and side by
@@ -67,14 +67,14 @@ class DOWNWASH_EXPORT WorldFlights {
     std::shared_ptr<const AeroMap> map_;
     std::vector<Goal> goals_;
     int threads_;
-    StopCondition is_over_;                           ///< of fly(), while it goes on
+    StopCondition is_over_;                           ///< what fly() asks while it goes on
     std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
 };
 
 /// A plan and the hover at its last goal, which ends at a knot of its own.
 [[nodiscard]] DOWNWASH_EXPORT Plan with_hover(const Plan& plan, const Goal& goal, const FlightModel& model);
 
-/// Of a job whose rules find it, to min_clearance_error_m; infinite before its first leg.
+/// The least clearance along a job whose rules find it, to min_clearance_error_m [m]; infinite before its first leg.
 [[nodiscard]] DOWNWASH_EXPORT double min_clearance_m(const FlightJob& job);
 
 }  // namespace downwash

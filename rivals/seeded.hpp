@@ -17,7 +17,7 @@ class Seeded : public Planner {
         this->rng_.setLocalSeed(seed);
     }
 
-    /// Of its tree, before its first turn 0.
+    /// The number of nodes of its tree, 0 before its first turn.
     [[nodiscard]] std::size_t nodes() const {
         if constexpr (requires { this->tStart_; }) {
             return this->tStart_->size() + this->tGoal_->size();

@@ -15,7 +15,7 @@ struct Closing {
     ReferenceKnot goal;   ///< at rest, in ticks since the start
     FlightState arrival;  ///< the vehicle before the hold
     FlightState end;      ///< the vehicle after the hold
-    double cost = 0;      ///< of the whole flight, hold included
+    double cost = 0;      ///< cost of the whole flight, hold included
 };
 
 /// The flights of one problem that planners over controls choose from, flown in closed loop tick by tick.

@@ -10,13 +10,13 @@ namespace downwash::planning {
 /// The vehicle in every world that a search flies in, the nominal one first.
 using Fleet = std::vector<FlightState>;
 
-/// The same legs, flown by a fleet.
+/// A job of a whole fleet: each vehicle flies the legs in its world.
 struct FleetJob {
     std::vector<FlightJob> jobs;  ///< one in each world
 
     /// As flown in the nominal world.
     [[nodiscard]] const std::vector<FlightLeg>& legs() const noexcept { return jobs.front().legs; }
-    /// Of the first world in which the flight ended early; nullptr when it did in none.
+    /// The rejected leg in the first world in which the flight ended early; nullptr when it did in none.
     [[nodiscard]] const FlightLeg* rejected_leg() const noexcept;
     [[nodiscard]] bool is_accepted() const noexcept { return rejected_leg() == nullptr; }
     /// At the end of a leg. @pre the flight was accepted that far

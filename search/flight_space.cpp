@@ -88,7 +88,7 @@ class FlightSpace : public ob::StateSpace {
     bool isMetricSpace() const override { return false; }
     bool hasSymmetricInterpolate() const override { return false; }
     void enforceBounds(ob::State*) const override {}  // samples keep them, and a flight cannot be moved
-    /// Of the reference; a start in motion may come to rest outside.
+    /// Whether the reference is inside; a start in motion may come to rest outside.
     bool satisfiesBounds(const ob::State* state) const override {
         return space().is_inside(configuration_of(point_of(state).reference));
     }

@@ -19,7 +19,7 @@ namespace downwash::planning {
 
 /// The moment that a state of that space holds.
 [[nodiscard]] FlightPoint& point_of(ompl::base::State* state);
-/// The same of a state that does not change.
+/// The moment that a state of that space holds, to read.
 [[nodiscard]] const FlightPoint& point_of(const ompl::base::State* state);
 
 /// A moment is valid if the edge to it was not rejected.

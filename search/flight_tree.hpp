@@ -18,9 +18,9 @@ namespace downwash::planning {
 /// A vehicle that arrived somewhere, and how.
 struct FlightNode {
     Configuration configuration;  ///< the reference point at which the edge to this node ends
-    ReferencePoint reference;     ///< the same with its derivatives; only the root and passages may move
+    ReferencePoint reference;     ///< that point with its derivatives; only the root and passages may move
     Fleet fleet;                  ///< the whole vehicle there in every world, integrators included
-    double cost = 0;              ///< of the flight from the start, in the objective's unit
+    double cost = 0;              ///< cost of the flight from the start, in the objective's unit
     FlightNode* parent = nullptr;
     std::int64_t ticks = 0;  ///< length of the edge from the parent
     std::int64_t ticks_from_start = 0;
@@ -106,7 +106,7 @@ class FlightTree {
     FreeAirCost free_air_cost_;
     std::deque<FlightNode> nodes_;
     std::vector<FlightNode*> moving_;
-    std::vector<Configuration> places_;  ///< of moving_, in one piece of memory
+    std::vector<Configuration> places_;  ///< configurations of moving_, in one piece of memory
     std::vector<FlightNode*> holds_;
 };
 

@@ -95,7 +95,7 @@ void FlightTreePlanner::begin(const FlightPoint& start) {
     refiner_.emplace(start, refined_flights_, refiner_random_);
     growth_->try_first(known_places_);
     if (known_plan_ && known_plan_->reference.size() > 1) {
-        refiner_->take({*known_plan_});
+        refiner_->work_on({*known_plan_});
         if (const FlownPlan* const known = refiner_->best()) {
             growth_->know_plan(refiner_->moments_of(*known));
         }
@@ -255,7 +255,7 @@ void FlightTreePlanner::refine() {
         refiner_->improve();
     }
     for (HandedOver& handed_over : std::exchange(handed_over_, {})) {
-        refiner_->take(std::move(handed_over.lineage), handed_over.steps_back);
+        refiner_->work_on(std::move(handed_over.lineage), handed_over.steps_back);
     }
     refiner_left_ -= static_cast<double>(refined_flights_.statistics().ticks - ticks_before) + parameters_.refine_work;
 }
@@ -345,7 +345,8 @@ void FlightTreePlanner::learn_from(const Proposal& failed, const std::vector<Cou
     }
 }
 
-/// Flies the cheapest plans one after the other until one is good; not many any more once the search is at its end.
+/// Executes the cheapest plans one after the other until one is good. At the end of the search it gives up after
+/// max_rejected_at_end plans.
 void FlightTreePlanner::settle_best(const ompl::base::PlannerTerminationCondition& terminated) {
     int rejected_at_end = 0;
     while (auto best = proposal(parameters_.final_gain)) {

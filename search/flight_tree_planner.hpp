@@ -73,7 +73,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     [[nodiscard]] const std::optional<Candidate>& best() const noexcept { return best_; }
     /// @pre solve() was called and found a start
     [[nodiscard]] const TreeGrowth& growth() const noexcept { return *growth_; }
-    /// Of everything that was simulated in the planner's own model since the last clear().
+    /// Counts everything that was simulated in the planner's own model since the last clear().
     [[nodiscard]] FlightStatistics statistics() const;
 
  protected:
@@ -85,7 +85,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     struct Proposal {
         Candidate candidate;
         int refined = 0;             ///< number of the refiner's plan, or
-        FlightNode* hold = nullptr;  ///< of the tree
+        FlightNode* hold = nullptr;  ///< a hold of the tree
         bool is_good = false;        ///< it counts
     };
 
@@ -114,26 +114,26 @@ class FlightTreePlanner : public ompl::base::Planner {
     bool stops_at_first_plan_ = false;
     std::optional<Plan> known_plan_;
     std::vector<Configuration> known_places_;
-    const ompl::base::PlannerTerminationCondition* terminated_ = nullptr;  ///< of the solve() under way
+    const ompl::base::PlannerTerminationCondition* terminated_ = nullptr;  ///< condition of the solve() under way
 
-    PlannedFlights flights_;          ///< of the tree
-    PlannedFlights refined_flights_;  ///< of the refiner
+    PlannedFlights flights_;          ///< flights of the tree
+    PlannedFlights refined_flights_;  ///< flights of the refiner
     Random refiner_random_;
     std::optional<TreeGrowth> growth_;
     std::optional<PlanRefiner> refiner_;
     std::uint64_t iterations_ = 0;
     std::optional<Candidate> best_;
-    /// A plan that the refiner takes on in the next round; see PlanRefiner::take().
+    /// A plan that the refiner takes on in the next round; see PlanRefiner::work_on().
     struct HandedOver {
         Lineage lineage;
         std::size_t steps_back = 0;
     };
     std::vector<HandedOver> handed_over_;
-    int failures_in_a_row_ = 0;           ///< of plans that were executed
-    double handed_over_cost_ = HUGE_VAL;  ///< of the tree's plan that the refiner got last
+    int failures_in_a_row_ = 0;           ///< failures of plans that were executed
+    double handed_over_cost_ = HUGE_VAL;  ///< cost of the tree's plan that the refiner got last
     std::size_t idle_rounds_ = 0;         ///< in a row, in which the refiner had no plan
     double tree_left_ = 0;                ///< work in this round; below 0 what was done too much
-    double refiner_left_ = 0;             ///< the same of the refiner
+    double refiner_left_ = 0;             ///< work of the refiner in this round
 };
 
 }  // namespace downwash::planning

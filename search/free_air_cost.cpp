@@ -8,7 +8,8 @@
 namespace downwash::planning {
 namespace {
 
-/// Of the rest-to-rest reference; what a motion of any length and division takes beyond its way over the top speed.
+/// Peak over mean speed of the rest-to-rest reference: no motion, however divided, takes less beyond its way over the
+/// top speed.
 constexpr double peak_over_mean_speed = 15.0 / 8.0;
 
 /// Power of the level, hovering vehicle, arm still [W].

@@ -18,10 +18,10 @@ class FreeAirCost {
     /// No chain of rest-to-rest motions between two configurations costs less than this.
     [[nodiscard]] double min_cost_of_motion(const Configuration& from, const Configuration& to) const;
 
-    /// Nor does any from a configuration to one that meets the goal, with the hold there.
+    /// No chain of motions from a configuration to one that meets the goal, with the hold there, costs less than this.
     [[nodiscard]] double min_cost_to_goal(const Configuration& from) const;
 
-    /// Of holding at a configuration [s].
+    /// The cost of a hold at a configuration. @param hold_s its length [s]
     [[nodiscard]] double of_hold(const Configuration& at, double hold_s) const;
 
  private:

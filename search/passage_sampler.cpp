@@ -13,13 +13,13 @@ constexpr int tries_for_a_bridge = 60;
 constexpr int other_sides = 8;  ///< that are tried from one side
 constexpr int tries_over_a_bridge = 20;
 constexpr std::size_t max_known = 64;
-constexpr double known_share = 0.7;       ///< of the samples, once a way is known
-constexpr double new_bridge_share = 0.5;  ///< of the others, once a bridge is known
+constexpr double known_share = 0.7;       ///< share of the samples, once a way is known
+constexpr double new_bridge_share = 0.5;  ///< share of the others, once a bridge is known
 // How far beside a known way: of its place, and shares of the limits of speed and force.
 constexpr double shift_m = 0.05;
 constexpr double speed_change = 0.1;
 constexpr double force_change = 0.1;
-constexpr double spread_rad = 0.5;  ///< of the velocity about the direction through a passage
+constexpr double spread_rad = 0.5;  ///< spread of the velocity about the direction through a passage
 constexpr double run_ups_s[] = {0.3, 0.45, 0.6, 0.8, 1.1, 1.5};
 
 std::size_t index_below(std::size_t count, Random& random) {
@@ -149,7 +149,7 @@ std::optional<ReferencePoint> PassageSampler::rest_beside(const Through& through
     return std::nullopt;
 }
 
-std::optional<PassageSampler::Way> PassageSampler::way_through(const Through& through) const {
+std::optional<PassageSampler::FoundPassage> PassageSampler::passage_through(const Through& through) const {
     const ReferencePoint& point = through.point;
     if (!keeps_limits(point, limits_) || space_.rejection_at(configuration_of(point), tilt(point)) != Rejection::none) {
         return std::nullopt;
@@ -159,14 +159,14 @@ std::optional<PassageSampler::Way> PassageSampler::way_through(const Through& th
     if (!run_out || leads(*run_up, *run_out)) {
         return std::nullopt;
     }
-    return Way{through, {*run_up, point, *run_out}};
+    return FoundPassage{through, {*run_up, point, *run_out}};
 }
 
-std::optional<PassageSampler::Way> PassageSampler::way_beside_known(Random& random) const {
-    return way_through(beside_known(random));
+std::optional<PassageSampler::FoundPassage> PassageSampler::passage_beside_known(Random& random) const {
+    return passage_through(beside_known(random));
 }
 
-std::optional<PassageSampler::Way> PassageSampler::way_over_bridge(Random& random) {
+std::optional<PassageSampler::FoundPassage> PassageSampler::passage_over_bridge(Random& random) {
     if (bridges_.empty() || random.chance(new_bridge_share)) {
         const std::optional<Bridge> bridge = found(random);
         if (!bridge) {
@@ -179,7 +179,7 @@ std::optional<PassageSampler::Way> PassageSampler::way_over_bridge(Random& rando
     }
     const Bridge& bridge = bridges_[index_below(bridges_.size(), random)];
     for (int i = 0; i < tries_over_a_bridge; ++i) {
-        if (const std::optional<Way> way = way_through(through(bridge, random))) {
+        if (const std::optional<FoundPassage> way = passage_through(through(bridge, random))) {
             return way;
         }
     }
@@ -189,7 +189,8 @@ std::optional<PassageSampler::Way> PassageSampler::way_over_bridge(Random& rando
 std::optional<Passage> PassageSampler::sample(Random& random, const std::function<bool(const Passage&)>& is_wanted) {
     for (int i = 0; i < tries; ++i) {
         const bool is_beside_known = !known_.empty() && random.chance(known_share);
-        const std::optional<Way> way = is_beside_known ? way_beside_known(random) : way_over_bridge(random);
+        const std::optional<FoundPassage> way =
+            is_beside_known ? passage_beside_known(random) : passage_over_bridge(random);
         if (!way || !is_wanted(way->passage)) {
             continue;
         }

@@ -16,7 +16,7 @@ struct Passage {
     ReferencePoint run_out;  ///< at rest
 };
 
-/// The same way flown backwards: with the same accelerations, so within the same limits.
+/// A passage flown backwards: with the same accelerations, so within the same limits.
 [[nodiscard]] Passage reversed(const Passage& passage);
 
 /// Draws ways through narrow passages, which nothing that stops and nothing level comes through. Passages are found by
@@ -45,7 +45,7 @@ class PassageSampler {
         ReferencePoint point;
         double along[2];  ///< direction along the passage, in x and z; of unit length
     };
-    struct Way {
+    struct FoundPassage {
         Through through;
         Passage passage;
     };
@@ -57,9 +57,9 @@ class PassageSampler {
     [[nodiscard]] Through through(const Bridge& bridge, Random& random) const;
     /// A point beside that of a way that was found.
     [[nodiscard]] Through beside_known(Random& random) const;
-    [[nodiscard]] std::optional<Way> way_beside_known(Random& random) const;
-    [[nodiscard]] std::optional<Way> way_over_bridge(Random& random);
-    [[nodiscard]] std::optional<Way> way_through(const Through& through) const;
+    [[nodiscard]] std::optional<FoundPassage> passage_beside_known(Random& random) const;
+    [[nodiscard]] std::optional<FoundPassage> passage_over_bridge(Random& random);
+    [[nodiscard]] std::optional<FoundPassage> passage_through(const Through& through) const;
     /// The place from or to which a reference leads that is at rest there and at a point after or before it. It lies
     /// behind or ahead of the point along the passage: a way that turns back does not lead through.
     /// @param side -1: before the point, 1: after it
@@ -73,7 +73,7 @@ class PassageSampler {
     double tick_s_;
     double bridge_m_;  ///< longest distance between the two sides
     std::vector<Bridge> bridges_;
-    std::vector<Through> known_;  ///< of ways that were found
+    std::vector<Through> known_;  ///< points of passages that were found
 };
 
 }  // namespace downwash::planning

@@ -15,7 +15,7 @@ constexpr double min_step = 0.01;
 /// When so many batches in a row did not make a plan better its steps become large again.
 constexpr int max_failures = 60;
 
-/// Of its batches, after how many the other plan has to be nearly as cheap as the best, and after how many cheaper.
+/// After how many of its batches the other plan has to be nearly as cheap as the best, and after how many cheaper.
 constexpr int batches_to_come_near = 60;
 constexpr double near_cost_ratio = 1.05;
 constexpr int batches_to_overtake = 180;
@@ -154,7 +154,7 @@ PlanRefiner::Change PlanRefiner::as_change(const Plan& plan) {
     return change;
 }
 
-void PlanRefiner::take(Lineage lineage, std::size_t steps_back) {
+void PlanRefiner::work_on(Lineage lineage, std::size_t steps_back) {
     if (lineage.back().reference.size() < 2) {
         return;  // the start meets the goal: there is nothing on the way
     }
@@ -282,16 +282,16 @@ double PlanRefiner::saved_before_rounding(const FlownPlan& base, const Change& c
     return needed_s(base.points, change.first, last_before) - needed_s(change.points, change.first, change.last);
 }
 
-/// Flies changes as believed: their own segments first and, where one gets to the old plan's next corner for less, the
-/// rest of the plan, hold included. The promising ones are flown in the other worlds, the cheapest first, until one is
-/// accepted and cheaper there, too.
+/// Flies changes in the nominal world: their own segments first and, where one gets to the old plan's next corner for
+/// less, the rest of the plan, hold included. The promising ones are flown in the other worlds, the cheapest first,
+/// until one is accepted and cheaper there, too.
 std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::vector<Change>& changes) {
     std::vector<FleetJob> jobs;
     jobs.reserve(changes.size());
     for (const Change& change : changes) {
         jobs.push_back(job_for({base.fleets[change.first].front()}, change, change.first, change.last));
     }
-    flights_.fly_as_believed(jobs);
+    flights_.fly_nominal(jobs);
     const auto is_whole = [&](std::size_t i) {
         return changes[i].first + jobs[i].legs().size() == changes[i].ticks.size() + 1;
     };
@@ -318,7 +318,7 @@ std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::
             rests.push_back(job_for(jobs[i].end(), changes[i], changes[i].last + 1, changes[i].ticks.size() - 1));
         }
     }
-    flights_.fly_as_believed(rests);
+    flights_.fly_nominal(rests);
     for (std::size_t i = 0; i < rests.size(); ++i) {
         std::ranges::copy(rests[i].legs(), std::back_inserter(jobs[unfinished[i]].jobs.front().legs));
     }

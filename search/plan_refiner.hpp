@@ -16,7 +16,7 @@ struct FlownPlan {
     std::vector<ReferencePoint> points;  ///< the first is the start, the last at rest at the goal
     std::vector<Fleet> fleets;           ///< the vehicle in every world at each point, and after the hold
     std::vector<double> costs;           ///< from the start up to each point
-    std::vector<double> nominal_costs;   ///< the same in the nominal world
+    std::vector<double> nominal_costs;   ///< costs up to each point in the nominal world
     std::vector<std::int64_t> ticks;     ///< from each point to the next
     double cost = 0, nominal_cost = 0;   ///< hold included
 };
@@ -37,8 +37,8 @@ class PlanRefiner {
     /// Whether there is room for another plan to work on.
     [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < max_tracks; }
     /// Flies a plan and takes it on, if nothing rejects it. Far more expensive ones than the best plan are not wanted.
-    /// Where counterexamples reject it, the cheaper one is taken on of the last plan in its lineage that they do not
-    /// reject, and of changes of the plan.
+    /// If counterexamples reject the plan, two others are tried: the last plan of its lineage that they do not reject,
+    /// and changes of the plan. The cheaper one is taken on.
     /// @param lineage not empty
     /// @param steps_back how many of its last plans are known to fail, or supposed to; after more than one, changes are
     /// tried only if no other plan flies
@@ -63,9 +63,9 @@ class PlanRefiner {
     struct Track {
         FlownPlan plan;
         Lineage lineage;   ///< up to the plan, or to one that it has become a little cheaper than
-        double kept_cost;  ///< of the last of them
-        int number;        ///< of the plan that was taken on
-        double step = 1;   ///< of changes, as a share of the largest
+        double kept_cost;  ///< cost of the last of them
+        int number;        ///< number of the plan that was taken on
+        double step = 1;   ///< size of changes, as a share of the largest
         int failures = 0;  ///< batches since the last success, or since steps became large again
         int batches = 0;   ///< that it was worked on
     };

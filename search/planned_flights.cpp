@@ -13,7 +13,8 @@
 namespace downwash::planning {
 namespace {
 
-/// In worlds other than the nominal one counts what counts when a plan is executed: the margin is kept as believed.
+/// The rules of planned flights. In the nominal world a flight keeps margin and bounds; in other worlds it only has to
+/// succeed, as when a plan is executed.
 FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::function<bool()> is_over) {
     FlightRules rules;
     rules.margin_m = problem.planner.safety_margin_m;
@@ -80,18 +81,18 @@ PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_
     : task_(task),
       limits_(task.problem.motion),
       tick_s_(task.model.tick().tick_s),
-      crew_(task.model, task.map, planning_rules(task.problem, true, is_over), &task.problem.goal, threads) {
+      nominal_pool_(task.model, task.map, planning_rules(task.problem, true, is_over), &task.problem.goal, threads) {
     if (task.worlds != nullptr) {
-        world_crew_ = std::make_unique<FlightPool>(task.model, task.map, planning_rules(task.problem, false, is_over),
+        world_pool_ = std::make_unique<FlightPool>(task.model, task.map, planning_rules(task.problem, false, is_over),
                                                    &task.problem.goal, threads);
     }
     forget();
 }
 
 void PlannedFlights::use_threads(int threads) {
-    crew_.use_threads(threads);
-    if (world_crew_ != nullptr) {
-        world_crew_->use_threads(threads);
+    nominal_pool_.use_threads(threads);
+    if (world_pool_ != nullptr) {
+        world_pool_->use_threads(threads);
     }
 }
 
@@ -173,7 +174,7 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
 }
 
 void PlannedFlights::fly(std::span<FlightJob> jobs) {
-    crew_.fly(jobs);
+    nominal_pool_.fly(jobs);
     for (const FlightJob& job : jobs) {
         count(job);
         if (const FlightLeg* leg = job.rejected_leg()) {
@@ -252,7 +253,7 @@ void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<Fleet
     for (FlightJob* owner : owners) {
         flown.push_back(std::move(*owner));
     }
-    (worlds.front() == 0 ? crew_ : *world_crew_).fly(flown);
+    (worlds.front() == 0 ? nominal_pool_ : *world_pool_).fly(flown);
     for (std::size_t i = 0; i < flown.size(); ++i) {
         count(flown[i]);
         rejected_in_[world_of[i]] += flown[i].rejected_leg() != nullptr ? 1 : 0;
@@ -261,11 +262,11 @@ void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<Fleet
 }
 
 void PlannedFlights::fly(std::span<FleetJob> jobs) {
-    fly_as_believed(jobs);
+    fly_nominal(jobs);
     fly_in_other_worlds(jobs);
 }
 
-void PlannedFlights::fly_as_believed(std::span<FleetJob> jobs) {
+void PlannedFlights::fly_nominal(std::span<FleetJob> jobs) {
     fly_in(std::array<std::size_t, 1>{0}, jobs);
     for (const FleetJob& fleet : jobs) {
         reject(fleet);

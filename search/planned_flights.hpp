@@ -20,7 +20,7 @@ struct FlightStatistics {
     std::uint64_t states_checked = 0;
     std::map<std::string, std::uint64_t> rejected;
     std::uint64_t rejections = 0;
-    std::optional<Obstruction> obstruction;  ///< of the ways to the goal that were rejected, the one that came nearest
+    std::optional<Obstruction> obstruction;  ///< where the rejected way that came nearest to the goal was stopped
 
     FlightStatistics& operator+=(const FlightStatistics& other);
 };
@@ -63,7 +63,7 @@ class PlannedFlights {
     /// rejected job once.
     void fly(std::span<FleetJob> jobs);
     /// Flies jobs in the nominal world alone.
-    void fly_as_believed(std::span<FleetJob> jobs);
+    void fly_nominal(std::span<FleetJob> jobs);
     /// Flies those jobs in all other worlds that were accepted in the nominal one: first in the worlds that have
     /// rejected most flights so far, as many as fill the lanes, then in the rest.
     void fly_in_other_worlds(std::span<FleetJob> jobs);
@@ -79,14 +79,14 @@ class PlannedFlights {
 
     /// The cost from the start up to the end of a leg that began with `from`.
     [[nodiscard]] double cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const;
-    /// The same as the mean over the worlds of the search, counterexamples apart.
+    /// The mean of that cost over the worlds of the search, counterexamples apart.
     [[nodiscard]] double cost_after(double cost_before, const Fleet& from, const FleetJob& job, std::size_t leg) const;
 
     /// A segment between two points in as few ticks as the limits of motion allow.
     [[nodiscard]] ReferenceSegment fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const;
     [[nodiscard]] const MotionLimits& limits() const noexcept { return limits_; }
 
-    [[nodiscard]] const FlightRules& rules() const noexcept { return crew_.rules(); }
+    [[nodiscard]] const FlightRules& rules() const noexcept { return nominal_pool_.rules(); }
     [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
     [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
     /// Forgets counterexamples and begins to count anew.
@@ -108,8 +108,8 @@ class PlannedFlights {
     const SearchTask& task_;
     MotionLimits limits_;
     double tick_s_;
-    FlightPool crew_;                         ///< of the nominal world
-    std::unique_ptr<FlightPool> world_crew_;  ///< of all others, if there are any
+    FlightPool nominal_pool_;                 ///< flies in the nominal world
+    std::unique_ptr<FlightPool> world_pool_;  ///< flies in all others, if there are any
     FlightStatistics statistics_;
     std::vector<Counterexample> joined_;
     std::vector<std::uint64_t> rejected_in_;  ///< flights by world, the nominal one first

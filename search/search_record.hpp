@@ -24,7 +24,7 @@ struct Improvement {
     double wall_s = 0;
     std::uint64_t iteration = 0;
     double cost = 0;                   ///< by the planner's own model
-    std::optional<double> flown_cost;  ///< of its flight with direct aerodynamics; mp-arm-ada only
+    std::optional<double> flown_cost;  ///< cost of its flight with direct aerodynamics; mp-arm-ada only
 };
 
 /// What stood between a search and its goal: of the ways into the goal region that were rejected, holds included, the
@@ -38,9 +38,9 @@ struct Obstruction {
 
 /// How a search went.
 struct SearchRecord {
-    double wall_s = 0;                             ///< of the search, direct flights of better plans included
+    double wall_s = 0;                             ///< time of the search, direct flights of better plans included
     double setup_wall_s = 0;                       ///< before it: checks of the problem, scene and aero map
-    double map_wall_s = 0;                         ///< of that, spent on the aero map
+    double map_wall_s = 0;                         ///< part of setup_wall_s spent on the aero map
     std::optional<double> first_solution_wall_s;   ///< first plan that the planner's own model accepted
     std::optional<double> first_certified_wall_s;  ///< first plan that got its certificate
     std::uint64_t iterations = 0;

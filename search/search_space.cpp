@@ -188,8 +188,8 @@ std::optional<Configuration> SearchSpace::sample_goal(Random& random) const {
     constexpr int tries = 20;
     const std::span<const Goal> goals = alternatives(goal_);
     for (int i = 0; i < tries; ++i) {
-        const auto lot = goals.size() == 1 ? 0 : random.uniform(0, static_cast<double>(goals.size()));
-        const Configuration candidate = moved_to(goals[static_cast<std::size_t>(lot)], sample(random), random);
+        const auto drawn = goals.size() == 1 ? 0 : random.uniform(0, static_cast<double>(goals.size()));
+        const Configuration candidate = moved_to(goals[static_cast<std::size_t>(drawn)], sample(random), random);
         if (is_valid(candidate)) {
             return candidate;
         }

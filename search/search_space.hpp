@@ -74,8 +74,8 @@ class SearchSpace {
     /// A configuration within the bounds, at most `radius_m` beside another in each coordinate.
     [[nodiscard]] Configuration sample_near(const Configuration& configuration, double radius_m, Random& random) const;
 
-    /// The same for a configuration that meets the goal: what the goal leaves free is moved. Nothing when that
-    /// collides.
+    /// A configuration beside one that meets the goal, which meets it too: what the goal leaves free is moved. Nothing
+    /// when that collides.
     [[nodiscard]] std::optional<Configuration> sample_goal_near(const Configuration& configuration, double radius_m,
                                                                 Random& random) const;
 

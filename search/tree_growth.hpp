@@ -34,9 +34,9 @@ class TreeGrowth {
     [[nodiscard]] bool has_plan() const noexcept { return known_plan_ || best_hold_cost_ < HUGE_VAL; }
     /// The cheapest hold that was not discarded; nullptr when there is none.
     [[nodiscard]] FlightNode* best_hold() const;
-    /// Of all holds, discarded ones too, by cost, the one with this rank, modulo their number; nullptr without any.
+    /// The hold with this rank by cost among all, discarded ones too, modulo their number; nullptr without any.
     [[nodiscard]] const FlightNode* hold_by_rank(std::size_t rank) const;
-    /// Of some holds, drawn at random, the one whose way leads farthest from a plan; nullptr when all follow it.
+    /// The hold whose way leads farthest from a plan, among some drawn at random; nullptr when all follow it.
     [[nodiscard]] const FlightNode* hold_away_from(const std::vector<ReferencePoint>& way);
 
     [[nodiscard]] const FlightTree& tree() const noexcept { return tree_; }
@@ -87,7 +87,7 @@ class TreeGrowth {
     FlightTree tree_;
     std::vector<Configuration> first_places_;  ///< yet to be tried, the next one last
     std::optional<std::vector<FlightPoint>> known_plan_;
-    double best_hold_cost_ = HUGE_VAL;  ///< of the holds that were not discarded
+    double best_hold_cost_ = HUGE_VAL;  ///< lowest cost of the holds that were not discarded
     const FlightNode* nearest_to_goal_;
     double nearest_distance_m_;
 };

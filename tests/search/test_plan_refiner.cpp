@@ -37,7 +37,7 @@ struct Fixture : test::FlightFixture {
 
 TEST_CASE("refining a plan makes it cheaper step by step, and it passes corners without a stop") {
     Fixture f;
-    f.refiner.take({f.stop_and_go()});
+    f.refiner.work_on({f.stop_and_go()});
     REQUIRE(f.refiner.best() != nullptr);
     const double before = f.refiner.best()->cost;
     double last = before;
@@ -58,7 +58,7 @@ TEST_CASE("refining a plan makes it cheaper step by step, and it passes corners 
 TEST_CASE(
     "what the refiner says of a plan is what flying it from the start gives, and its reference keeps the limits") {
     Fixture f;
-    f.refiner.take({f.stop_and_go()});
+    f.refiner.work_on({f.stop_and_go()});
     for (int batch = 0; batch < 60; ++batch) {
         f.refiner.improve();
     }
@@ -82,13 +82,13 @@ TEST_CASE("a plan that cannot be flown is not taken on, and one that was dropped
     Fixture f;
     Plan through_the_ground = f.stop_and_go();
     through_the_ground.reference[1].point.position[1] = -1;
-    f.refiner.take({through_the_ground});
+    f.refiner.work_on({through_the_ground});
     CHECK(f.refiner.best() == nullptr);
     f.refiner.improve();  // nothing to work on
-    f.refiner.take({f.stop_and_go()});
+    f.refiner.work_on({f.stop_and_go()});
     REQUIRE(f.refiner.best() != nullptr);
     CHECK(f.refiner.wants_plan());
-    f.refiner.take({f.stop_and_go()});
+    f.refiner.work_on({f.stop_and_go()});
     CHECK_FALSE(f.refiner.wants_plan());
     const int first = f.refiner.best_number();
     f.refiner.drop(first);
@@ -104,7 +104,7 @@ TEST_CASE("every segment of a refined plan keeps the limits, however the number 
     std::size_t least_corners = 100;
     for (std::uint32_t seed = 1; seed <= 4; ++seed) {
         Fixture f(seed);
-        f.refiner.take({f.stop_and_go()});
+        f.refiner.work_on({f.stop_and_go()});
         REQUIRE(f.refiner.best() != nullptr);
         for (int batch = 0; batch < 60; ++batch) {
             f.refiner.improve();
@@ -126,7 +126,7 @@ TEST_CASE("every segment of a refined plan keeps the limits, however the number 
 
 TEST_CASE("a plan that a counterexample rejects is changed until it flies there, too") {
     Fixture f(4, true);
-    f.refiner.take({f.stop_and_go()});
+    f.refiner.work_on({f.stop_and_go()});
     REQUIRE(f.refiner.best() != nullptr);
     CHECK(f.refiner.best()->fleets.front().size() == 1);
 
@@ -138,7 +138,7 @@ TEST_CASE("a plan that a counterexample rejects is changed until it flies there,
     REQUIRE(lineages.size() == 1);
     const Plan& rejected = lineages[0].back();
     CHECK(rejected.reference.size() == f.stop_and_go().reference.size());
-    f.refiner.take(lineages[0]);
+    f.refiner.work_on(lineages[0]);
     REQUIRE(f.refiner.best() != nullptr);
     const planning::FlownPlan& repaired = *f.refiner.best();
     CHECK(repaired.fleets.front().size() == 2);
@@ -160,7 +160,7 @@ TEST_CASE("a plan that a counterexample rejects is changed until it flies there,
 TEST_CASE("a plan that is known to fail is not taken on as it is") {
     Fixture f(4, true);
     f.flights.join({{make_world(f.problem.robot, World{}), f.task.start}});
-    f.refiner.take({f.stop_and_go()}, 1);
+    f.refiner.work_on({f.stop_and_go()}, 1);
     REQUIRE(f.refiner.best() != nullptr);
     const std::vector<planning::Lineage> taken = f.refiner.release();
     CHECK_FALSE(test::same_bytes(taken.at(0).back(), f.stop_and_go()));
@@ -172,11 +172,11 @@ TEST_CASE("where a counterexample rejects a plan and not those from which it cam
     raised.scene_z_m = 0.65;
     f.flights.join({{make_world(f.problem.robot, raised), f.task.start}});
     const auto with_corner_at = [&f](double z_m) { return f.stop_and_go(Configuration{-2, z_m, 0}); };
-    f.refiner.take({with_corner_at(1.8)});
+    f.refiner.work_on({with_corner_at(1.8)});
     REQUIRE(f.refiner.best() != nullptr);
     const double cost = f.refiner.best()->cost;
     CHECK(f.refiner.release().size() == 1);
-    f.refiner.take({with_corner_at(1.9), with_corner_at(1.8), with_corner_at(1.1), with_corner_at(1)});
+    f.refiner.work_on({with_corner_at(1.9), with_corner_at(1.8), with_corner_at(1.1), with_corner_at(1)});
     REQUIRE(f.refiner.best() != nullptr);
     CHECK(f.refiner.best()->cost <= cost);
     const planning::Lineage lineage = f.refiner.release().at(0);
