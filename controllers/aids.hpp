@@ -11,7 +11,7 @@ struct DisturbanceObserver {
 
 /// The map whose thrust ratios a law divides its rotor commands by.
 struct FeedForward {
-    double offset_x_m = 0;  ///< where the map has the surfaces, from where they are believed to be
+    double offset_x_m = 0;  ///< where the map has the surfaces, from where they nominally are
     double offset_z_m = 0;
 };
 

@@ -217,7 +217,7 @@ class LawRows {
             below("feed_forward"), "divides rotor commands by the thrust ratios that a map has at the rotors",
             feed_forward));
         add(downwash::number(below("feed_forward.offset_x_m"),
-                             "where the map has the surfaces, from where they are believed to be",
+                             "where the map has the surfaces, from where they nominally are",
                              place_in(feed_forward, &FeedForward::offset_x_m))
                 .between(-100, 100));
         add(downwash::number(below("feed_forward.offset_z_m"), "the same along z",
