@@ -42,7 +42,7 @@ class PlanRefiner {
     /// @param lineage not empty
     /// @param steps_back how many of its last plans are known to fail, or supposed to; after more than one, changes are
     /// tried only if no other plan flies
-    void take(Lineage lineage, std::size_t steps_back = 0);
+    void work_on(Lineage lineage, std::size_t steps_back = 0);
     /// Gives up its plans, the best first, to be taken on anew when counterexamples have joined.
     [[nodiscard]] std::vector<Lineage> release();
 
