@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "downwash/judge/statistics.hpp"
+#include "downwash/base/quantile.hpp"
 
 namespace downwash::judge {
 

@@ -50,17 +50,6 @@ Probability probability_of(std::size_t hits, std::size_t runs) {
     return probability;
 }
 
-double quantile(std::vector<double> values, double q) {
-    std::sort(values.begin(), values.end());
-    const double place = q * static_cast<double>(values.size() - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const double share = place - static_cast<double>(below);
-    // Between infinite neighbours there is nothing to interpolate.
-    return share == 0 || values[below] == values[below + 1]
-               ? values[below]
-               : values[below] + share * (values[below + 1] - values[below]);
-}
-
 std::optional<double> rank_correlation(std::span<const double> a, std::span<const double> b) {
     const std::vector<double> x = ranks_of(a);
     const std::vector<double> y = ranks_of(b);

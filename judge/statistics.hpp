@@ -19,10 +19,6 @@ struct Probability {
 /// The probability of an event that happened in some of so many runs. @pre hits <= runs, runs > 0
 [[nodiscard]] DOWNWASH_EXPORT Probability probability_of(std::size_t hits, std::size_t runs);
 
-/// The q-quantile, linear between the order statistics (type 7 of Hyndman and Fan 1996). Values may be infinite.
-/// @pre 0 <= q <= 1, there are values and none is NaN
-[[nodiscard]] DOWNWASH_EXPORT double quantile(std::vector<double> values, double q);
-
 /// Spearman's rank correlation (1904), from -1 to 1; ties get the mean of their ranks. Nothing if either side has equal
 /// values only. @pre equal sizes, no NaN
 [[nodiscard]] DOWNWASH_EXPORT std::optional<double> rank_correlation(std::span<const double> a,

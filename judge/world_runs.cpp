@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "downwash/base/parallel.hpp"
+#include "downwash/base/quantile.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::judge {

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Whether every relative link of the Markdown files leads to a file that is there, and every #anchor to a heading of it.
+# Whether every relative link of the Markdown files leads to a file that is there, and every #anchor to a heading of it. Every picture of docs/figures
+# has to be shown on a page.
 # Usage: tests/docs/check_links.sh [folder, default: that of the project]
 set -euo pipefail
 
@@ -50,5 +51,12 @@ while read -r page; do
         fi
     done < <(links "$page")
 done < <(find . \( -path './build*' -o -name .git -o -name downwash-out -o -name .cache \) -prune -o -name '*.md' -print | sed 's|^\./||' | LC_ALL=C sort)
+while read -r picture; do
+    name=$(basename "$picture")
+    if ! grep -qF "figures/$name" README.md docs/*.md; then
+        echo "$picture: no page shows it"
+        bad=$((bad + 1))
+    fi
+done < <(find docs/figures -name '*.svg' -o -name '*.png')
 echo "$count links in $pages pages, $bad of them wrong"
 [[ $count -gt 0 && $bad -eq 0 ]]

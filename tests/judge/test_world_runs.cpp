@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "../support/test_problem.hpp"
+#include "downwash/base/quantile.hpp"
 #include "downwash/judge/world_runs.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
@@ -24,12 +25,12 @@ TEST_CASE("Intervals of Clopper and Pearson are those of tables") {
 }
 
 TEST_CASE("Quantiles lie linearly between order statistics") {
-    CHECK(judge::quantile({4, 1, 3, 2}, 0.5) == Approx(2.5));
-    CHECK(judge::quantile({4, 1, 3, 2}, 0) == 1);
-    CHECK(judge::quantile({4, 1, 3, 2}, 1) == 4);
-    CHECK(judge::quantile({10, 20, 30}, 0.1) == Approx(12));
+    CHECK(quantile({4, 1, 3, 2}, 0.5) == Approx(2.5));
+    CHECK(quantile({4, 1, 3, 2}, 0) == 1);
+    CHECK(quantile({4, 1, 3, 2}, 1) == 4);
+    CHECK(quantile({10, 20, 30}, 0.1) == Approx(12));
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    CHECK(judge::quantile({infinity, infinity, infinity}, 0.3) == infinity);
+    CHECK(quantile({infinity, infinity, infinity}, 0.3) == infinity);
 }
 
 TEST_CASE("Rank correlation follows the order, whatever the scale, with mean ranks for ties") {
