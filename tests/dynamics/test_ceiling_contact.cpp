@@ -184,7 +184,8 @@ TEST_CASE("At rest under suction the vehicle stays at rest") {
     double depth_m = 0;
     for (int i = 0; i < 50; ++i) {  // the depth at which springs, suction and weight balance
         state.q[2] = ceiling_m - guard_height_m + depth_m;
-        const double push_n = 0.9 * mass_kg * 9.80665 * Suction{}(0, 0, 0, state.q[2] + 0.01) - mass_kg * 9.80665;
+        const double push_n =
+            0.9 * mass_kg * 9.80665 * Suction{}.thrust_ratio(0, {0, 0, state.q[2] + 0.01}) - mass_kg * 9.80665;
         depth_m = push_n / (16 * contact.stiffness_n_m);
     }
     const State start = state;

@@ -1,3 +1,4 @@
+#include "../support/test_problem.hpp"
 #include "../support/test_robot.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_writer.hpp"

@@ -170,8 +170,8 @@ TEST_CASE("goal samples meet the goal with the arm on either side") {
             CHECK(f.task.space.is_near_goal(*sample));
             exact += f.task.space.error(*sample).distance_m < 1e-9 ? 1 : 0;
             CHECK(f.task.space.is_valid(*sample));
-            left = left || sample->x_m < test::end_effector(f.problem.goal).x_m;
-            right = right || sample->x_m > test::end_effector(f.problem.goal).x_m;
+            left = left || (*sample)[plane::x] < test::end_effector(f.problem.goal).x_m;
+            right = right || (*sample)[plane::x] > test::end_effector(f.problem.goal).x_m;
         }
     }
     CHECK(found > 100);

@@ -90,7 +90,7 @@ TEST_CASE("an arm that turns more than once reaches a direction by the shorter t
     for (int i = 0; i < 200; ++i) {
         if (const auto c = f.space.sample_goal(random)) {
             CHECK(f.space.is_inside(*c));
-            ++(c->arm_rad > 0 ? high : low);
+            ++((*c)[plane::arm] > 0 ? high : low);
         }
     }
     CHECK(high > 20);
