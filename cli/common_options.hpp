@@ -21,9 +21,12 @@ std::pair<Command, Arguments&> add_command(Command parent, Action& action, const
                                            const std::string& description, ExitCode (*run)(const Arguments&)) {
     const auto given = std::make_shared<Arguments>();
     Command command = parent.add_command(name, description);
-    if (run != nullptr) {
-        command.on_given([=, &action] { action = [=] { return run(*given); }; });
-    }
+    // The values live as long as the command line, with or without something to run.
+    command.on_given([=, &action] {
+        if (run != nullptr) {
+            action = [=] { return run(*given); };
+        }
+    });
     return {command, *given};
 }
 
