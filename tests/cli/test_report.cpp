@@ -82,7 +82,7 @@ TEST_CASE("Keys are explained from the table that reads them") {
     CHECK_THAT(work.run("explain goal").out, Contains("hold_s"));
     CHECK(work.run("explain goal.hold").out == work.run("explain goal.hold_s").out);
     CHECK_THAT(work.run("explain tolerance_m").out,
-               StartsWith("goal.end_effector.tolerance_m\ngoal.configuration.tolerance_m\n"));  // said once
+               StartsWith("goal.configuration.tolerance_m\ngoal.end_effector.tolerance_m\n"));  // said once
     CHECK_THAT(work.run("explain uncertainty.vehicle.mass_scale").out,
                StartsWith("robot.uncertainty.vehicle.mass_scale\n") && Contains("default:  {sd: 0.02}\n") &&
                    Contains("\nuncertainty.vehicle.mass_scale\n") &&
