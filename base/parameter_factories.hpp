@@ -153,6 +153,7 @@ Parameter<Model> choices(std::string_view path, std::string_view description,
 template <class Values>
 auto named(const Values& values) {
     std::vector<std::pair<typename Values::value_type, std::string_view>> named;
+    named.reserve(std::size(values));
     for (const auto value : values) {
         named.emplace_back(value, name_of(value));
     }

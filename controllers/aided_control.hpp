@@ -71,8 +71,8 @@ class Aid {
 
 template <CanBeAided Law>
 template <class T>
-Aided<Law>::Memory<T> Aided<Law>::rested(const PlantModel& nominal, const dynamics::PlantState<T>& state,
-                                         double tick_s) const {
+auto Aided<Law>::rested(const PlantModel& nominal, const dynamics::PlantState<T>& state, double tick_s) const
+    -> Memory<T> {
     Memory<T> memory{law.rested(nominal, state), {T(0), T(0), T(0), T(0)}};
     if (law.aids.observer) {
         start_observing(*law.aids.observer, tick_s, nominal, state, memory.observed);
@@ -90,10 +90,10 @@ void Aided<Law>::hold_estimate(const Memory<T>& before, const T change[4], doubl
 
 template <CanBeAided Law>
 template <class T, class Map>
-Aided<Law>::Memory<T> Aided<Law>::control(const PlantModel& nominal, const dynamics::PlantState<T>& seen,
-                                          const dynamics::Motion<T>& motion, const Memory<T>& memory,
-                                          const BasicReferencePoint<T>& reference, double tick_s, Actuation<T>& given,
-                                          const Map& map) const {
+auto Aided<Law>::control(const PlantModel& nominal, const dynamics::PlantState<T>& seen,
+                         const dynamics::Motion<T>& motion, const Memory<T>& memory,
+                         const BasicReferencePoint<T>& reference, double tick_s, Actuation<T>& given,
+                         const Map& map) const -> Memory<T> {
     Aid<T, Map> aid(law.aids, nominal, seen, motion, memory.observed, tick_s, map);
     Memory<T> next;
     next.loops = law.control(nominal, seen, motion, memory.loops, reference, tick_s, given, aid);

@@ -114,6 +114,7 @@ std::span<const AlgorithmInfo> algorithms() {
 
 std::vector<std::string_view> algorithm_names() {
     std::vector<std::string_view> names;
+    names.reserve(std::size(table));
     for (const AlgorithmInfo& algorithm : table) {
         names.push_back(algorithm.name);
     }
