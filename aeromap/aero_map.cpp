@@ -140,7 +140,7 @@ void AeroMap::build(int threads, const std::function<void(double)>& on_progress,
     }
 }
 
-AeroMap AeroMap::rebuilt(std::vector<MapLayer> layers, const std::vector<Scene::Bounds>& changed, int threads,
+AeroMap AeroMap::rebuilt(std::vector<MapLayer> layers, const std::vector<BoundingBox>& changed, int threads,
                          const StopCondition& is_over) const {
     AeroMap next(Empty(), std::move(layers), plane_, extent_);
     const bool is_same_grid = next.cell_m_ == cell_m_ && next.columns_ == columns_ && next.rows_ == rows_ &&
@@ -153,13 +153,13 @@ AeroMap AeroMap::rebuilt(std::vector<MapLayer> layers, const std::vector<Scene::
     return next;
 }
 
-bool AeroMap::is_touched(const std::vector<Scene::Bounds>& changed, const Bounds& part) const {
+bool AeroMap::is_touched(const std::vector<BoundingBox>& changed, const Bounds& part) const {
     const bool is_inside = part.x_low_m >= extent_.x_low_m && part.x_high_m <= extent_.x_high_m &&
                            part.z_low_m >= extent_.z_low_m && part.z_high_m <= extent_.z_high_m;
     if (!is_inside || (!changed.empty() && sees_beside(layers_))) {
         return true;
     }
-    return std::any_of(changed.begin(), changed.end(), [&](const Scene::Bounds& box) {
+    return std::any_of(changed.begin(), changed.end(), [&](const BoundingBox& box) {
         const ColumnRange columns = FactorPatches::changing_with(columns_beside({box}));
         return columns.first < columns.last &&
                extent_.x_low_m + static_cast<double>(columns.first) * cell_m_ <= part.x_high_m &&
@@ -169,10 +169,10 @@ bool AeroMap::is_touched(const std::vector<Scene::Bounds>& changed, const Bounds
 
 /// The columns whose discs are over or under some boxes, or so near them that it matters for what is flyable; none
 /// without a box.
-ColumnRange AeroMap::columns_beside(const std::vector<Scene::Bounds>& boxes) const {
+ColumnRange AeroMap::columns_beside(const std::vector<BoundingBox>& boxes) const {
     double low_m = std::numeric_limits<double>::infinity();
     double high_m = -low_m;
-    for (const Scene::Bounds& box : boxes) {
+    for (const BoundingBox& box : boxes) {
         for (const double x_m : {box.low_m[0], box.high_m[0]}) {
             for (const double y_m : {box.low_m[1], box.high_m[1]}) {
                 const double along_m = plane_.from_world({x_m, y_m, 0})[0];

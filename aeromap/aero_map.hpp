@@ -59,12 +59,12 @@ class DOWNWASH_EXPORT AeroMap {
     /// columns over and under what changed are evaluated again, if K depends on what is over and under the disc alone.
     /// @param layers as those of the map, in the new scene   @param changed boxes around what changed, before and after
     /// @throws WorkStopped when it is over before the map is built
-    [[nodiscard]] AeroMap rebuilt(std::vector<MapLayer> layers, const std::vector<Scene::Bounds>& changed,
+    [[nodiscard]] AeroMap rebuilt(std::vector<MapLayer> layers, const std::vector<BoundingBox>& changed,
                                   int threads = 1, const StopCondition& is_over = {}) const;
 
     /// Whether a part of the map may be another once boxes have changed; see rebuilt(). A part outside the extent is
     /// evaluated directly, in the old scene: then the answer is yes.
-    [[nodiscard]] bool is_touched(const std::vector<Scene::Bounds>& changed, const Bounds& part) const;
+    [[nodiscard]] bool is_touched(const std::vector<BoundingBox>& changed, const Bounds& part) const;
 
     /// The content of the map as bytes. Only a machine of the same byte order can read them.
     [[nodiscard]] std::string to_bytes() const;
@@ -151,7 +151,7 @@ class DOWNWASH_EXPORT AeroMap {
     /// @param before in which the columns between were something else; nullptr for a new map
     void build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over,
                const AeroMap* before, const ColumnRange& changed);
-    [[nodiscard]] ColumnRange columns_beside(const std::vector<Scene::Bounds>& boxes) const;
+    [[nodiscard]] ColumnRange columns_beside(const std::vector<BoundingBox>& boxes) const;
     void add_raster(Raster raster);
     [[nodiscard]] bool is_sound(const Raster& raster) const;
     [[nodiscard]] bool agrees_with_effect(std::size_t layer) const;

@@ -14,14 +14,14 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-SidedChange max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
+SidedChange max_change(const DirectEffect& effect, const BoundingBox& hubs) {
     if (effect.settings().map || effect.is_of_walls()) {
         return {0, infinity};
     }
     const Scene& scene = effect.scene();
     const double r = effect.column_radius_m();
-    const Scene::Bounds column{{hubs.low_m[0] - r, hubs.low_m[1] - r, -infinity},
-                               {hubs.high_m[0] + r, hubs.high_m[1] + r, infinity}};
+    const BoundingBox column{{hubs.low_m[0] - r, hubs.low_m[1] - r, -infinity},
+                             {hubs.high_m[0] + r, hubs.high_m[1] + r, infinity}};
     double below_m = infinity;
     double above_m = infinity;
     std::array<std::byte, 4096> room;
@@ -29,7 +29,7 @@ SidedChange max_change(const DirectEffect& effect, const Scene::Bounds& hubs) {
     std::pmr::vector<std::size_t> parts(&memory);
     scene.add_parts_meeting(column, parts);
     for (const std::size_t part : parts) {
-        const Scene::Bounds bounds = scene.part_bounds(part);
+        const BoundingBox bounds = scene.part_bounds(part);
         if (bounds.low_m[2] <= hubs.high_m[2]) {
             below_m = std::min(below_m, std::max(0.0, hubs.low_m[2] - bounds.high_m[2]));
         }

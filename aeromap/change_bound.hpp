@@ -13,7 +13,7 @@ struct SidedChange {
 };
 /// Nowhere among the hubs in a box (world axes) does K differ more than this from 1: each side counts as covered by a
 /// flat surface somewhere from the least vertical gap on. Where K comes from a given map: infinite, from above.
-[[nodiscard]] SidedChange max_change(const DirectEffect& effect, const Scene::Bounds& hubs);
+[[nodiscard]] SidedChange max_change(const DirectEffect& effect, const BoundingBox& hubs);
 
 /// Whether K differs so little from 1 among the hubs in a box that maps need not look closer: by 0.006 at most, or not
 /// at all as the effects are disabled.

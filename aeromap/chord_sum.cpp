@@ -55,7 +55,7 @@ class ChordSum {
           envelope_(query, background_m, memory) {
         double nearest_m = background_m;
         for (const std::size_t part : parts) {
-            const Scene::Bounds bounds = query.scene.part_bounds(part);
+            const BoundingBox bounds = query.scene.part_bounds(part);
             const double gap = query.gap(bounds.low_m[2], bounds.high_m[2]);
             if (!(gap < background_m)) {
                 continue;

@@ -96,8 +96,8 @@ bool FactorPatches::is_met(const Square& square, const Values& values) {
 bool FactorPatches::is_quiet(const Square& square) const {
     return downwash::is_quiet(
         grid_.effect,
-        max_change(grid_.effect, Scene::Bounds::around(hub_m(square.x, square.z),
-                                                       hub_m(square.x + square.side, square.z + square.side))));
+        max_change(grid_.effect, BoundingBox::around(hub_m(square.x, square.z),
+                                                     hub_m(square.x + square.side, square.z + square.side))));
 }
 
 SidedFactor<double> FactorPatches::factor(double x_m, double z_m) {

@@ -37,7 +37,7 @@ struct Footprint {
     [[nodiscard]] bool lies_beside(const Footprint& other) const noexcept;
 
     std::size_t part;
-    Scene::Bounds bounds;
+    BoundingBox bounds;
     bool is_level;                 ///< see Scene::is_level
     bool has_plane_faces = false;  ///< a box or a triangle
     ShadowOutline outline;

@@ -178,9 +178,9 @@ class RowsBuilder {
     }
 
     /// The box around the hubs in a cell.
-    [[nodiscard]] Scene::Bounds hubs_in(const CellSquare& cell) const {
-        return Scene::Bounds::around(hub(cell.x_low_m, cell.z_low_m),
-                                     hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m));
+    [[nodiscard]] BoundingBox hubs_in(const CellSquare& cell) const {
+        return BoundingBox::around(hub(cell.x_low_m, cell.z_low_m),
+                                   hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m));
     }
 
     void add_cell(std::size_t i, std::size_t k) {

@@ -138,7 +138,7 @@ class VolumeMap::Builder {
 
     [[nodiscard]] bool is_quiet(const Box& box) const {
         const Vector3 first = hub_m(box.low);
-        Scene::Bounds hubs{first, first};
+        BoundingBox hubs{first, first};
         for (std::uint32_t corner = 1; corner < 8; ++corner) {
             const Vector3 hub = hub_m(box.at(corner & 1U, corner >> 1U & 1U, corner >> 2U, 1));
             hubs.include({hub, hub});

@@ -151,7 +151,7 @@ void Planner::apply(const SceneChange& change) {
         return;
     }
     Problem next = problem_;
-    std::vector<Scene::Bounds> changed;
+    std::vector<BoundingBox> changed;
     const auto box_of = [&changed](const Obstacle& obstacle) { changed.push_back(Scene({obstacle}).bounds(0)); };
     const auto take_away = [&](const std::string& name) {
         const auto found = std::find_if(next.obstacles.begin(), next.obstacles.end(),

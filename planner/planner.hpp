@@ -125,8 +125,8 @@ class DOWNWASH_EXPORT Planner {
     Problem problem_;
     SolveOptions options_;
     std::shared_ptr<const FlightModel> model_;
-    std::shared_ptr<const AeroMap> map_;   ///< map of the scene as it is, once it was needed
-    std::vector<Scene::Bounds> unmapped_;  ///< changes that the map does not know yet
+    std::shared_ptr<const AeroMap> map_;  ///< map of the scene as it is, once it was needed
+    std::vector<BoundingBox> unmapped_;   ///< changes that the map does not know yet
     std::optional<Plan> plan_;
     std::vector<Configuration> places_;  ///< that carried the tree of the last search
     std::uint32_t searches_ = 0;         ///< searches of replan() so far

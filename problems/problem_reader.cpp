@@ -12,14 +12,6 @@
 namespace downwash {
 namespace {
 
-std::string joined(const std::vector<LocatedError>& errors) {
-    std::string text;
-    for (const LocatedError& error : errors) {
-        text += (text.empty() ? "" : "\n") + to_text(error);
-    }
-    return text;
-}
-
 using ProblemTreeReader = problems::TreeReader<Problem>;
 
 void throw_errors(const ProblemTreeReader& reader) {
@@ -60,13 +52,6 @@ void tell(ProblemTreeReader& reader, const std::function<void(const LocatedError
 }
 
 }  // namespace
-
-std::string to_text(const LocatedError& error) {
-    return error.file + ":" + std::to_string(error.line) + ":" + std::to_string(error.column) + ": " + error.message;
-}
-
-ProblemFileError::ProblemFileError(std::vector<LocatedError> errors)
-    : std::runtime_error(joined(errors)), errors_(std::move(errors)) {}
 
 Problem read_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust,
                      const std::function<void(const LocatedError&)>& on_outdated,

@@ -1,42 +1,14 @@
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
-#include <stdexcept>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/problems/located_error.hpp"
 #include "downwash/problems/problem_model.hpp"
 
 namespace downwash {
-
-/// Larger problem and robot files are refused unread [bytes].
-inline constexpr std::size_t largest_document = 32UL * 1024 * 1024;
-
-/// Something wrong, or outdated, in a problem or robot file.
-struct LocatedError {
-    std::string file;     ///< The file as the caller or the problem file names it.
-    int line = 1;         ///< Counted from 1.
-    int column = 1;       ///< In bytes, counted from 1.
-    std::string message;  ///< What is wrong, what was expected, and the nearest valid name or another remedy.
-};
-
-/// "file:line:column: message"
-[[nodiscard]] DOWNWASH_EXPORT std::string to_text(const LocatedError& error);
-
-/// A problem or robot file cannot be used; what() has one line for every error.
-class DOWNWASH_EXPORT ProblemFileError : public std::runtime_error {
- public:
-    /// @pre there is at least one error
-    explicit ProblemFileError(std::vector<LocatedError> errors);
-    [[nodiscard]] const std::vector<LocatedError>& errors() const noexcept { return errors_; }
-
- private:
-    std::vector<LocatedError> errors_;
-};
 
 /// Reads a problem and the robot that it refers to, whose path is relative to the problem's file.
 /// The result is complete and sound: problem_errors() finds nothing in it.

@@ -209,7 +209,7 @@ void require_readable_again(const Problem& problem, const std::filesystem::path&
                                   std::to_string(most) + what + " or less; obstacles may stand in a mesh"});
         }
     };
-    refuse((text.size() + 1023) / 1024, largest_document / 1024, " KiB");
+    refuse((text.size() + 1023) / 1024, problems::largest_document / 1024, " KiB");
     refuse(problems::separators_in(text), problems::most_separators, " line breaks, commas, colons and brackets");
     throw_if_any(std::move(errors));
 }

@@ -4,8 +4,7 @@
 #include <string>
 
 #include "downwash/base/text.hpp"
-#include "downwash/problems/problem_reader.hpp"
-#include "downwash/problems/yaml_document.hpp"
+#include "downwash/problems/yaml_node.hpp"
 
 namespace downwash::problems {
 namespace {

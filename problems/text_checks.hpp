@@ -5,6 +5,9 @@
 
 namespace downwash::problems {
 
+/// Larger problem and robot files are refused unread [bytes].
+inline constexpr std::size_t largest_document = 32UL * 1024 * 1024;
+
 /// A text with more separators is refused unread: each may stand for a value or two, and each of these takes up to
 /// 300 bytes of memory while the text is read. A scene of 100,000 boxes with every default filled in has 1.9 million.
 inline constexpr std::size_t most_separators = 2500000;

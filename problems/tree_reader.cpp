@@ -7,8 +7,9 @@
 #include "downwash/base/text.hpp"
 #include "downwash/problems/campaign.hpp"
 #include "downwash/problems/key_remedy.hpp"
-#include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/text_checks.hpp"
 #include "downwash/problems/value_reader.hpp"
+#include "downwash/problems/yaml_document.hpp"
 
 namespace downwash::problems {
 namespace {

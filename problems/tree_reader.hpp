@@ -8,8 +8,8 @@
 
 #include "downwash/base/checks.hpp"
 #include "downwash/base/parameter_table.hpp"
-#include "downwash/problems/problem_reader.hpp"
-#include "downwash/problems/yaml_document.hpp"
+#include "downwash/problems/located_error.hpp"
+#include "downwash/problems/yaml_node.hpp"
 
 namespace downwash::problems {
 

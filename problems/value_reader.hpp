@@ -1,7 +1,7 @@
 #pragma once
 
 #include "downwash/base/parameter.hpp"
-#include "downwash/problems/yaml_document.hpp"
+#include "downwash/problems/yaml_node.hpp"
 
 namespace downwash::problems {
 

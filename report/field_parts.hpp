@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "downwash/report/field_figure.hpp"
+#include "downwash/report/field.hpp"
 #include "downwash/report/legend.hpp"
 
 namespace downwash {

@@ -11,14 +11,14 @@ namespace {
 constexpr std::uint32_t max_in_leaf = 8;
 
 /// The point in the middle of a box, as a box.
-Scene::Bounds middle_of(const Scene::Bounds& box) {
+BoundingBox middle_of(const BoundingBox& box) {
     const Vector3 middle = 0.5 * (box.low_m + box.high_m);
     return {middle, middle};
 }
 
 }  // namespace
 
-BoundsTree::BoundsTree(std::span<const Scene::Bounds> parts) : order_(parts.size()) {
+BoundsTree::BoundsTree(std::span<const BoundingBox> parts) : order_(parts.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
     if (!parts.empty()) {
         build(parts, 0, static_cast<std::uint32_t>(parts.size()));
@@ -28,9 +28,9 @@ BoundsTree::BoundsTree(std::span<const Scene::Bounds> parts) : order_(parts.size
 
 /// Halves the parts at the median of their middles along the axis on which these lie widest apart. (Not along the
 /// longest side of their common box: the triangles of a long girder are as long as itself.)
-void BoundsTree::build(std::span<const Scene::Bounds> parts, std::uint32_t first, std::uint32_t last) {
-    Scene::Bounds all = parts[order_[first]];
-    Scene::Bounds middles = middle_of(all);
+void BoundsTree::build(std::span<const BoundingBox> parts, std::uint32_t first, std::uint32_t last) {
+    BoundingBox all = parts[order_[first]];
+    BoundingBox middles = middle_of(all);
     for (std::uint32_t i = first + 1; i < last; ++i) {
         all.include(parts[order_[i]]);
         middles.include(middle_of(parts[order_[i]]));

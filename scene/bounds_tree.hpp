@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "downwash/scene/scene.hpp"
+#include "downwash/scene/bounding_box.hpp"
 
 namespace downwash {
 
@@ -16,7 +16,7 @@ namespace downwash {
 class BoundsTree {
  public:
     BoundsTree() = default;
-    explicit BoundsTree(std::span<const Scene::Bounds> parts);
+    explicit BoundsTree(std::span<const BoundingBox> parts);
 
     /// Calls `visit(part)` for every part whose own box may have a gap of at most `limit`, nearer boxes first, until it
     /// returns true; whether it did. `limit` may shrink meanwhile.
@@ -61,7 +61,7 @@ class BoundsTree {
     /// A leaf holds `count` parts from `first` on in order_; an inner node (count 0) has its children at the next
     /// index and at `first`.
     struct Node {
-        Scene::Bounds bounds;
+        BoundingBox bounds;
         std::uint32_t first, count;
     };
     struct Entry {
@@ -71,7 +71,7 @@ class BoundsTree {
     /// Halving two thousand million parts takes 31 steps, and each leaves at most one node open.
     static constexpr std::size_t max_levels = 40;
 
-    void build(std::span<const Scene::Bounds> parts, std::uint32_t first, std::uint32_t last);
+    void build(std::span<const BoundingBox> parts, std::uint32_t first, std::uint32_t last);
 
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> order_;

@@ -91,7 +91,7 @@ std::vector<Piece> pieces_of(const RobotShape& robot) {
 
 /// Upper bound of the distance from the frame's origin to any point of the solid.
 double reach_of(const Convex& convex) {
-    const Scene::Bounds bounds = bounds_of(convex);
+    const BoundingBox bounds = bounds_of(convex);
     double squared = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const double farthest = std::max(std::abs(bounds.low_m[k]), std::abs(bounds.high_m[k]));
@@ -120,14 +120,14 @@ struct CollisionChecker::Impl {
     bool is_far_away(const PlanarPose& pose, double margin_m) const {
         const Vector3 center = plane.to_world(pose.x_m, 0, pose.z_m);
         const Vector3 reach{reach_m, reach_m, reach_m};
-        const Scene::Bounds everywhere{center - reach, center + reach};
-        const auto gap = [&](const Scene::Bounds& box) { return gap_m(everywhere, box); };
+        const BoundingBox everywhere{center - reach, center + reach};
+        const auto gap = [&](const BoundingBox& box) { return gap_m(everywhere, box); };
         const auto is_near = [&](std::size_t part) { return gap(solids.parts.bounds(part)) <= margin_m; };
         return !solids.parts.any(gap, margin_m, is_near) && !solids.is_inside_mesh(center);
     }
 
     std::shared_ptr<const Scene> scene;
-    const Scene::Solids& solids;
+    const SceneSolids& solids;
     PlaneOfMotion plane;
     std::vector<Piece> pieces;
     Vector3 joint_m;          ///< in the body frame

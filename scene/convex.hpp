@@ -7,7 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "downwash/scene/scene.hpp"
+#include "downwash/scene/bounding_box.hpp"
+#include "downwash/scene/shapes.hpp"
 
 namespace downwash {
 
@@ -39,7 +40,7 @@ Convex convex_of(const Primitive& shape, const Vector3& center_m, const Placemen
 /// Half the extents along the axes of the frame [m]: the tight bounding box is center +- these.
 Vector3 half_extents_m(const Convex& convex) noexcept;
 
-inline Scene::Bounds bounds_of(const Convex& convex) noexcept {
+inline BoundingBox bounds_of(const Convex& convex) noexcept {
     const Vector3 half = half_extents_m(convex);
     return {convex.center_m - half, convex.center_m + half};
 }
@@ -58,7 +59,7 @@ bool is_nearer_than(const Convex& a, const Convex& b, double margin_m) noexcept;
 
 /// The largest of the gaps between two bounding boxes along the three axes [m], a lower bound of the distance between
 /// what they hold; negative when they overlap.
-inline double gap_m(const Scene::Bounds& a, const Scene::Bounds& b) noexcept {
+inline double gap_m(const BoundingBox& a, const BoundingBox& b) noexcept {
     double gap = a.low_m[0] - b.high_m[0];
     const auto widen = [&gap](double other) { gap = other > gap ? other : gap; };
     widen(b.low_m[0] - a.high_m[0]);
@@ -70,7 +71,7 @@ inline double gap_m(const Scene::Bounds& a, const Scene::Bounds& b) noexcept {
 }
 
 /// The distance of two bounding boxes [m], 0 when they meet: a better lower bound, at the price of a root.
-inline double box_distance_m(const Scene::Bounds& a, const Scene::Bounds& b) noexcept {
+inline double box_distance_m(const BoundingBox& a, const BoundingBox& b) noexcept {
     double squared = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const double gap = std::max({0.0, a.low_m[k] - b.high_m[k], b.low_m[k] - a.high_m[k]});

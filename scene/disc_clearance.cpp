@@ -18,7 +18,7 @@ Convex level_disc(const Vector3& center_m, double radius_m) {
 }
 
 /// How far a point lies from a box within the horizontal plane through it; infinite when the plane passes the box by.
-double level_gap_m(const Scene::Bounds& box, const Vector3& p_m) {
+double level_gap_m(const BoundingBox& box, const Vector3& p_m) {
     if (p_m[2] < box.low_m[2] || p_m[2] > box.high_m[2]) {
         return infinity;
     }
@@ -65,9 +65,9 @@ bool column_is_clear(const Scene& scene, const Vector3& center_m, double radius_
 }
 
 double horizontal_clearance_m(const Scene& scene, const Vector3& point_m) {
-    const Scene::Solids& solids = scene.solids();
+    const SceneSolids& solids = scene.solids();
     double min_m = infinity;
-    const auto gap = [&](const Scene::Bounds& box) { return level_gap_m(box, point_m); };
+    const auto gap = [&](const BoundingBox& box) { return level_gap_m(box, point_m); };
     solids.parts.any(gap, min_m, [&](std::size_t part) {
         if (gap(solids.parts.bounds(part)) < min_m) {
             min_m = std::min(min_m, solids.parts.with_convex(part, [&](const Convex& convex) {

@@ -13,7 +13,7 @@ void Parts::add(const Primitive& primitive, const Vector3& center_m, const Place
 }
 
 void Parts::index() {
-    std::vector<Scene::Bounds> others;
+    std::vector<BoundingBox> others;
     others.reserve(count() - primitives.size());
     for (std::size_t part = primitives.size(); part < count(); ++part) {
         others.push_back(bounds(part));
@@ -31,7 +31,7 @@ Convex Parts::convex_of_other(std::size_t part) const noexcept {
         [](const Triangle& triangle) { return convex_of(triangle); });
 }
 
-Scene::Bounds Parts::bounds_of_other(std::size_t part) const noexcept {
+BoundingBox Parts::bounds_of_other(std::size_t part) const noexcept {
     return visit(
         part, [this](std::size_t i) { return primitive_bounds[i]; },
         [](const OctreeBox& box, const Placement& placement) {

@@ -28,7 +28,7 @@ struct Parts {
     std::vector<Placement> primitive_placements;
     std::vector<Convex> primitive_convexes;
     std::vector<SeenFromAbove> primitives_from_above;
-    std::vector<Scene::Bounds> primitive_bounds;  ///< tight
+    std::vector<BoundingBox> primitive_bounds;  ///< tight
 
     std::vector<OctreeBox> octree_boxes;
     std::vector<Placement> octree_placements;
@@ -56,7 +56,7 @@ struct Parts {
     [[nodiscard]] std::size_t first_triangle() const noexcept { return primitives.size() + octree_boxes.size(); }
     [[nodiscard]] std::size_t count() const noexcept { return first_triangle() + triangles.size(); }
 
-    [[nodiscard]] Scene::Bounds bounds(std::size_t part) const noexcept {
+    [[nodiscard]] BoundingBox bounds(std::size_t part) const noexcept {
         return part < primitive_bounds.size() ? primitive_bounds[part] : bounds_of_other(part);
     }
     /// Calls `use(convex)` with the part as a solid.
@@ -81,7 +81,7 @@ struct Parts {
 
  private:
     [[nodiscard]] Convex convex_of_other(std::size_t part) const noexcept;
-    [[nodiscard]] Scene::Bounds bounds_of_other(std::size_t part) const noexcept;
+    [[nodiscard]] BoundingBox bounds_of_other(std::size_t part) const noexcept;
 
     BoundsTree primitive_tree_;
     BoundsTree other_tree_;

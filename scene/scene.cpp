@@ -149,7 +149,7 @@ void require_valid(const std::vector<Obstacle>& obstacles) {
 struct PartsMaker {
     const Obstacle& obstacle;
     const std::string& key;
-    Scene::Solids& solids;
+    SceneSolids& solids;
 
     Vector3 to_world(const Matrix3& rotation, const Vector3& p_m) const {
         return obstacle.center_world_m + rotation * p_m;
@@ -161,18 +161,18 @@ struct PartsMaker {
                               key + name);
         }
     }
-    Scene::Bounds operator()(const Primitive& primitive) const {
+    BoundingBox operator()(const Primitive& primitive) const {
         solids.parts.add(primitive, obstacle.center_world_m, placement_of(primitive, rotation_of(obstacle.rpy_rad)));
         return solids.parts.primitive_bounds.back();
     }
-    Scene::Bounds operator()(const Octomap& octomap) const {
+    BoundingBox operator()(const Octomap& octomap) const {
         const std::vector<LocalBox> boxes = merged_boxes(*octomap.tree);
         require_room(boxes.size(), ".octomap.file");
         Parts& parts = solids.parts;
         const Placement placement = placement_of(Box{}, rotation_of(obstacle.rpy_rad));
         const auto turn = static_cast<std::uint32_t>(parts.octree_placements.size());
         parts.octree_placements.push_back(placement);
-        Scene::Bounds bounds = nothing;
+        BoundingBox bounds = nothing;
         for (const LocalBox& box : boxes) {
             const OctreeBox placed{to_world(placement.rotation, box.center_m), box.size_m, turn};
             parts.octree_boxes.push_back(placed);
@@ -180,7 +180,7 @@ struct PartsMaker {
         }
         return bounds;
     }
-    Scene::Bounds operator()(const Mesh& mesh) const {
+    BoundingBox operator()(const Mesh& mesh) const {
         require_room(mesh.surface->triangles.size(), ".mesh.file");
         const MeshSides sides = sides_of(*mesh.surface);
         if (sides.kind == SurfaceKind::contradictory) {
@@ -192,7 +192,7 @@ struct PartsMaker {
         std::vector<Triangle>& triangles = solids.parts.triangles;
         const Matrix3 rotation = rotation_of(obstacle.rpy_rad);
         const std::size_t first = triangles.size();
-        Scene::Bounds bounds = nothing;
+        BoundingBox bounds = nothing;
         for (Triangle triangle : scaled_triangles(mesh, sides.is_turned)) {
             for (Vector3& corner : triangle) {
                 corner = to_world(rotation, corner);
@@ -207,12 +207,12 @@ struct PartsMaker {
     }
 
     static constexpr double infinity = std::numeric_limits<double>::infinity();
-    static constexpr Scene::Bounds nothing{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
+    static constexpr BoundingBox nothing{{infinity, infinity, infinity}, {-infinity, -infinity, -infinity}};
 };
 
-std::shared_ptr<const Scene::Solids> placed(std::vector<Obstacle> obstacles) {
+std::shared_ptr<const SceneSolids> placed(std::vector<Obstacle> obstacles) {
     require_valid(obstacles);
-    auto solids = std::make_shared<Scene::Solids>();
+    auto solids = std::make_shared<SceneSolids>();
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string key = "obstacles[" + std::to_string(i) + "]";
         solids->bounds.push_back(std::visit(PartsMaker{obstacles[i], key, *solids}, obstacles[i].shape));
@@ -234,7 +234,7 @@ const std::vector<Obstacle>& Scene::obstacles() const noexcept {
     return solids_->obstacles;
 }
 
-const Scene::Bounds& Scene::bounds(std::size_t obstacle) const noexcept {
+const BoundingBox& Scene::bounds(std::size_t obstacle) const noexcept {
     return solids_->bounds[obstacle];
 }
 
@@ -246,9 +246,9 @@ std::size_t Scene::primitive_count() const noexcept {
     return solids_->parts.primitives.size();
 }
 
-void Scene::add_parts_meeting(const Bounds& box, std::pmr::vector<std::size_t>& parts) const {
+void Scene::add_parts_meeting(const BoundingBox& box, std::pmr::vector<std::size_t>& parts) const {
     const Parts& all = solids_->parts;
-    const auto gap = [&](const Bounds& other) { return gap_m(box, other); };
+    const auto gap = [&](const BoundingBox& other) { return gap_m(box, other); };
     all.any(gap, 0, [&](std::size_t part) {
         if (gap(all.bounds(part)) <= 0) {
             parts.push_back(part);
@@ -261,11 +261,11 @@ bool Scene::is_triangle(std::size_t part) const noexcept {
     return part >= solids_->parts.first_triangle();
 }
 
-Scene::Bounds Scene::part_bounds(std::size_t part) const noexcept {
+BoundingBox Scene::part_bounds(std::size_t part) const noexcept {
     return solids_->parts.bounds(part);
 }
 
-const Scene::Solids& Scene::solids() const noexcept {
+const SceneSolids& Scene::solids() const noexcept {
     return *solids_;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -8,16 +7,12 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/scene/bounding_box.hpp"
 #include "downwash/scene/shapes.hpp"
 
 namespace downwash {
 
-/// An interval along a line, in metres from the line's point. Empty when low > high.
-struct Interval {
-    double low = 1;
-    double high = -1;
-    [[nodiscard]] bool empty() const noexcept { return low > high; }
-};
+struct SceneSolids;
 
 /// The obstacles of the world, placed once and never changed; safe to share between threads, and copies share them.
 class DOWNWASH_EXPORT Scene {
@@ -29,26 +24,8 @@ class DOWNWASH_EXPORT Scene {
 
     [[nodiscard]] const std::vector<Obstacle>& obstacles() const noexcept;
 
-    /// A world-aligned box [m].
-    struct Bounds {
-        Vector3 low_m, high_m;
-
-        /// The smallest one that holds two points.
-        [[nodiscard]] static Bounds around(const Vector3& a, const Vector3& b) noexcept {
-            Bounds both{a, a};
-            both.include({b, b});
-            return both;
-        }
-        /// Grows until it holds another box, or a point given as both corners of one.
-        void include(const Bounds& other) noexcept {
-            for (std::size_t k = 0; k < 3; ++k) {
-                low_m[k] = std::min(low_m[k], other.low_m[k]);
-                high_m[k] = std::max(high_m[k], other.high_m[k]);
-            }
-        }
-    };
     /// The bounding box of the obstacle of that number in obstacles().
-    [[nodiscard]] const Bounds& bounds(std::size_t obstacle) const noexcept;
+    [[nodiscard]] const BoundingBox& bounds(std::size_t obstacle) const noexcept;
 
     /// Obstacles consist of convex parts: a mesh of its triangles, an octree of boxes that fill what its cubes fill,
     /// any other is its own only part. Parts are numbered through; those of primitives come first, in the obstacles'
@@ -59,7 +36,7 @@ class DOWNWASH_EXPORT Scene {
     [[nodiscard]] std::size_t primitive_count() const noexcept;
 
     /// Appends the parts whose bounding boxes meet a box, in no order.
-    void add_parts_meeting(const Bounds& box, std::pmr::vector<std::size_t>& parts) const;
+    void add_parts_meeting(const BoundingBox& box, std::pmr::vector<std::size_t>& parts) const;
 
     /// Whether a part is a triangle, which has no inside.
     [[nodiscard]] bool is_triangle(std::size_t part) const noexcept;
@@ -74,7 +51,7 @@ class DOWNWASH_EXPORT Scene {
     bool add_faces(std::size_t part, bool is_from_above, std::pmr::vector<Face>& faces) const;
 
     /// World-aligned bounding box of one part [m].
-    [[nodiscard]] Bounds part_bounds(std::size_t part) const noexcept;
+    [[nodiscard]] BoundingBox part_bounds(std::size_t part) const noexcept;
 
     /// Whether a part is seen from above: upright triangles are not.
     [[nodiscard]] bool has_shadow(std::size_t part) const noexcept;
@@ -93,11 +70,10 @@ class DOWNWASH_EXPORT Scene {
     [[nodiscard]] bool is_level(std::size_t part) const noexcept;
 
     /// The placed obstacles for the collision library; only scene/ looks inside.
-    struct Solids;
-    [[nodiscard]] const Solids& solids() const noexcept;
+    [[nodiscard]] const SceneSolids& solids() const noexcept;
 
  private:
-    std::shared_ptr<const Solids> solids_;
+    std::shared_ptr<const SceneSolids> solids_;
 };
 
 }  // namespace downwash

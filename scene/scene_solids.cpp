@@ -4,10 +4,10 @@
 
 namespace downwash {
 
-bool Scene::Solids::are_near(const Convex& solid, double distance_m) const {
+bool SceneSolids::are_near(const Convex& solid, double distance_m) const {
     const double near_m = std::max(distance_m, contact_m);
-    const Bounds around = bounds_of(solid);
-    const auto gap = [&](const Bounds& box) { return gap_m(around, box); };
+    const BoundingBox around = bounds_of(solid);
+    const auto gap = [&](const BoundingBox& box) { return gap_m(around, box); };
     const auto is_near = [&](std::size_t part) {
         return gap(parts.bounds(part)) <= near_m &&
                parts.with_convex(part, [&](const Convex& convex) { return is_nearer_than(solid, convex, near_m); });
@@ -15,10 +15,10 @@ bool Scene::Solids::are_near(const Convex& solid, double distance_m) const {
     return parts.any(gap, near_m, is_near) || is_inside_mesh(solid.center_m);
 }
 
-double Scene::Solids::clearance_m(const Convex& solid, double enough_m) const {
+double SceneSolids::clearance_m(const Convex& solid, double enough_m) const {
     double min_m = enough_m;
-    const Bounds around = bounds_of(solid);
-    const auto gap = [&](const Bounds& box) { return box_distance_m(around, box); };
+    const BoundingBox around = bounds_of(solid);
+    const auto gap = [&](const BoundingBox& box) { return box_distance_m(around, box); };
     parts.any(gap, min_m, [&](std::size_t part) {
         if (gap(parts.bounds(part)) < min_m) {
             min_m = std::min(
@@ -29,8 +29,8 @@ double Scene::Solids::clearance_m(const Convex& solid, double enough_m) const {
     return min_m > 0 && is_inside_mesh(solid.center_m) ? 0 : min_m;
 }
 
-bool Scene::Solids::is_inside_closed_surface(const Vector3& p_m) const noexcept {
-    const auto apart_upwards = [&](const Bounds& box) {
+bool SceneSolids::is_inside_closed_surface(const Vector3& p_m) const noexcept {
+    const auto apart_upwards = [&](const BoundingBox& box) {
         return std::max({box.low_m[0] - p_m[0], p_m[0] - box.high_m[0], box.low_m[1] - p_m[1], p_m[1] - box.high_m[1],
                          p_m[2] - box.high_m[2]});
     };

@@ -7,20 +7,19 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/scene/parts.hpp"
-#include "downwash/scene/scene.hpp"
 
 namespace downwash {
 
 /// Everything in the world frame N.
-struct Scene::Solids {
+struct SceneSolids {
     /// A mesh without a rim, which is solid: `first` to `last` - 1 of Parts::triangles.
     struct ClosedSurface {
         std::size_t first, last;
-        Bounds bounds;
+        BoundingBox bounds;
     };
 
     std::vector<Obstacle> obstacles;
-    std::vector<Bounds> bounds;  ///< tight boxes of the obstacles
+    std::vector<BoundingBox> bounds;  ///< tight boxes of the obstacles
     Parts parts;
     std::vector<ClosedSurface> closed_surfaces;
 

@@ -52,7 +52,7 @@ Vector3 normal_of(const Triangle& triangle) noexcept {
 }
 
 Convex convex_of(const Triangle& triangle) noexcept {
-    const Scene::Bounds bounds = bounds_of(triangle);
+    const BoundingBox bounds = bounds_of(triangle);
     const Vector3 center = 0.5 * (bounds.low_m + bounds.high_m);
     return {.center_m = center,
             .segment_count = 3,
@@ -60,8 +60,8 @@ Convex convex_of(const Triangle& triangle) noexcept {
             .half_axes_m = {triangle[0] - center, triangle[1] - center, triangle[2] - center}};
 }
 
-Scene::Bounds bounds_of(const Triangle& triangle) noexcept {
-    Scene::Bounds bounds{triangle[0], triangle[0]};
+BoundingBox bounds_of(const Triangle& triangle) noexcept {
+    BoundingBox bounds{triangle[0], triangle[0]};
     bounds.include({triangle[1], triangle[1]});
     bounds.include({triangle[2], triangle[2]});
     return bounds;

@@ -4,8 +4,8 @@
 
 #include <array>
 
+#include "downwash/scene/bounding_box.hpp"
 #include "downwash/scene/convex.hpp"
-#include "downwash/scene/scene.hpp"
 
 namespace downwash {
 
@@ -15,7 +15,7 @@ using Triangle = std::array<Vector3, 3>;
 /// The triangle as a solid of no thickness.
 [[nodiscard]] Convex convex_of(const Triangle& triangle) noexcept;
 
-[[nodiscard]] Scene::Bounds bounds_of(const Triangle& triangle) noexcept;
+[[nodiscard]] BoundingBox bounds_of(const Triangle& triangle) noexcept;
 
 /// Twice the area times the unit normal.
 [[nodiscard]] Vector3 normal_of(const Triangle& triangle) noexcept;

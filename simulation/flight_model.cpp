@@ -50,7 +50,7 @@ std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int t
     return cached_map(cache, layers(), plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress, is_over);
 }
 
-std::shared_ptr<const AeroMap> FlightModel::remake_map(const AeroMap& before, const std::vector<Scene::Bounds>& changed,
+std::shared_ptr<const AeroMap> FlightModel::remake_map(const AeroMap& before, const std::vector<BoundingBox>& changed,
                                                        int threads, const StopCondition& is_over) const {
     return std::make_shared<const AeroMap>(before.rebuilt(layers(), changed, threads, is_over));
 }

@@ -91,7 +91,7 @@ class DOWNWASH_EXPORT FlightModel {
     /// The same from that of a scene of which parts have changed; see AeroMap::rebuilt().
     /// @param before map of the same robot, model and bounds   @param changed boxes around the parts, before and after
     [[nodiscard]] std::shared_ptr<const AeroMap> remake_map(const AeroMap& before,
-                                                            const std::vector<Scene::Bounds>& changed, int threads = 1,
+                                                            const std::vector<BoundingBox>& changed, int threads = 1,
                                                             const StopCondition& is_over = {}) const;
 
     /// Whether a map is the one that make_map() makes for these bounds.

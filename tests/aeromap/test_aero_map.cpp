@@ -83,7 +83,7 @@ TEST_CASE("A map that follows a change of its scene is that of the new scene to 
         const Bounds extent{-2, 2, -1.5, 1.5};
         const AeroMap old(test::layers(effect_in(before, radius), {-0.2, 0.1}), plane, extent);
         const auto layers = test::layers(effect_in(after, radius), {-0.2, 0.1});
-        std::vector<Scene::Bounds> changed;
+        std::vector<BoundingBox> changed;
         for (const Obstacle& touched : kind == 0   ? std::vector{after.back()}
                                        : kind == 1 ? std::vector{before.front(), after.front()}
                                                    : std::vector{before.back()}) {

@@ -69,13 +69,13 @@ std::vector<Obstacle> some_obstacles(test::Random& random, int count, double siz
     return all;
 }
 
-Scene::Bounds bounds_of(const Obstacle& obstacle) {
+BoundingBox bounds_of(const Obstacle& obstacle) {
     return Scene({obstacle}).bounds(0);
 }
 
 /// Moved up or down so that it ends at a height: its top where `is_below`, else its lower side.
 Obstacle ending_at(Obstacle obstacle, double z_m, bool is_below) {
-    const Scene::Bounds bounds = bounds_of(obstacle);
+    const BoundingBox bounds = bounds_of(obstacle);
     obstacle.center_world_m[2] += z_m - (is_below ? bounds.high_m[2] : bounds.low_m[2]);
     return obstacle;
 }
@@ -264,7 +264,7 @@ TEST_CASE("An obstacle of any kind wholly behind another, as seen from the disc,
         const Obstacle front = ending_at(shade(random.integer(0, shade_kinds - 1), random), away(0.08), is_below);
         // As large as it may be within the shadow, and right behind.
         Obstacle hidden = obstacle_of(kind, random, {});
-        const Scene::Bounds bounds = bounds_of(hidden);
+        const BoundingBox bounds = bounds_of(hidden);
         const double reach_m =
             std::max({std::hypot(bounds.low_m[0], bounds.low_m[1]), std::hypot(bounds.low_m[0], bounds.high_m[1]),
                       std::hypot(bounds.high_m[0], bounds.low_m[1]), std::hypot(bounds.high_m[0], bounds.high_m[1])});
@@ -296,7 +296,7 @@ TEST_CASE("An obstacle of any kind wholly behind another, as seen from the disc,
                 }
             },
             hidden.shape);
-        const Scene::Bounds of_front = bounds_of(front);
+        const BoundingBox of_front = bounds_of(front);
         const double behind_m = is_below ? of_front.low_m[2] - 0.001 : of_front.high_m[2] + 0.001;
         hidden.center_world_m = {front.center_world_m[0], front.center_world_m[1], 0};
         hidden = ending_at(hidden, behind_m, is_below);
@@ -353,7 +353,7 @@ TEST_CASE("Obstacles that are not over or under the disc change nothing, however
         const Vector3 hub_m = test::any_point(random, {5, 5, 1.5});
         std::vector<Obstacle> near;
         for (const Obstacle& obstacle : all) {
-            const Scene::Bounds bounds = bounds_of(obstacle);
+            const BoundingBox bounds = bounds_of(obstacle);
             if (bounds.low_m[0] < hub_m[0] + radius && bounds.high_m[0] > hub_m[0] - radius &&
                 bounds.low_m[1] < hub_m[1] + radius && bounds.high_m[1] > hub_m[1] - radius) {
                 near.push_back(obstacle);

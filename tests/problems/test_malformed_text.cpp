@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "downwash/problems/text_checks.hpp"
 #include "edits.hpp"
 
 using namespace downwash;
@@ -60,7 +61,7 @@ TEST_CASE("files that cannot be read are errors") {
     folder.write("problem.yaml", edited(good_problem, "robot.yaml", "folder.yaml"));
     CHECK(folder.errors_of("problem.yaml") ==
           "problem.yaml:3:8: robot 'folder.yaml' cannot be read: it is a directory, expected a file");
-    folder.write("large.yaml", std::string(largest_document + 1, ' '));
+    folder.write("large.yaml", std::string(problems::largest_document + 1, ' '));
     CHECK(folder.errors_of("large.yaml") ==
           "large.yaml:1:1: is larger than 32768 KiB: expected a problem or robot file");
     folder.write("crowded.yaml", "[" + repeated("1,", 2600000) + "1]");

@@ -40,9 +40,9 @@ TEST_CASE("Rolled, pitched and yawed boxes are bounded as computed by hand") {
                        {"", Box{{2, 2, 1}}, {0, 0, 0}, {0, 0, quarter / 2}},
                        {"", Cylinder{1, 6, {0, 0, 5}}, {0, 0, 0}, {0, quarter, 0}}});
     const double diagonal = std::sqrt(2.0);
-    const std::vector<Scene::Bounds> expected{{{7, 18, 29}, {13, 22, 31}},
-                                              {{-diagonal, -diagonal, -0.5}, {diagonal, diagonal, 0.5}},
-                                              {{-3, -1, -1}, {3, 1, 1}}};
+    const std::vector<BoundingBox> expected{{{7, 18, 29}, {13, 22, 31}},
+                                            {{-diagonal, -diagonal, -0.5}, {diagonal, diagonal, 0.5}},
+                                            {{-3, -1, -1}, {3, 1, 1}}};
     for (std::size_t i = 0; i < expected.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
             CHECK(scene.bounds(i).low_m[k] == Approx(expected[i].low_m[k]).margin(1e-14));
@@ -56,7 +56,7 @@ TEST_CASE("Bounds hold every point of an obstacle and touch it on all six sides"
     for (int round = 0; round < 200; ++round) {
         const Scene scene(dice.obstacles(1));
         const reference::Solid solid = reference::solid_of(scene.obstacles()[0]);
-        const Scene::Bounds& bounds = scene.bounds(0);
+        const BoundingBox& bounds = scene.bounds(0);
         for (int i = 0; i < 100; ++i) {
             const Vector3 point = reference::project(solid, dice.vector(-5, 5));
             for (std::size_t k = 0; k < 3; ++k) {

@@ -44,7 +44,7 @@ inline Vector3 near_shadow_edge(Random& random, const DirectEffect& effect) {
     const Scene& scene = effect.scene();
     const double radius_m = effect.rotor_radius_m();
     const auto part = static_cast<std::size_t>(random.integer(0, static_cast<int>(scene.part_count()) - 1));
-    const Scene::Bounds bounds = scene.part_bounds(part);
+    const BoundingBox bounds = scene.part_bounds(part);
     const int along = random.integer(0, 2);  // 2: a corner
     Vector3 hub_m{};
     for (int axis = 0; axis < 2; ++axis) {
