@@ -1,6 +1,7 @@
 #include "downwash/simulation/loop_margins.hpp"
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,7 @@
 #include "downwash/cli/output.hpp"
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <cstdio>
 #include <utility>

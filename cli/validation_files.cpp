@@ -1,6 +1,7 @@
 #include "downwash/cli/validation_files.hpp"
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 // Private: not installed.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "downwash/results/number_table.hpp"
 

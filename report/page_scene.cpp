@@ -1,6 +1,7 @@
 #include "downwash/report/page_scene.hpp"
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 // Private: not installed. The parts of a problem that a page shows, in the coordinates of the plane of motion.
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include <optional>
 
