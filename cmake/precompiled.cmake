@@ -1,23 +1,22 @@
 # Headers that most sources include, compiled once for all modules with the same options: a fresh build reads them 300 times
-# otherwise. A compiler cache does better without, and so do warnings: see below.
+# otherwise. A compiler cache does better without. g++ 12 forgets that what it inlines comes from a header of the system, and
+# warns of overflows that cannot happen: such warnings are off where headers are precompiled, so sources whose warnings are
+# errors read their headers themselves.
 
-if(CMAKE_CXX_COMPILER_LAUNCHER OR DOWNWASH_WERROR)
+if(CMAKE_CXX_COMPILER_LAUNCHER)
   set(precompiled OFF)
+elseif(DOWNWASH_WERROR)
+  set(precompiled TESTS)
 else()
-  set(precompiled ON)
+  set(precompiled ALL)
 endif()
-option(DOWNWASH_PRECOMPILED "Compile headers of libraries once for all modules" ${precompiled})
-if(DOWNWASH_PRECOMPILED)
-  # g++ 12 forgets that what it inlines comes from a header of the system, and warns of overflows that cannot happen.
-  target_compile_options(downwash_options INTERFACE
-    $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds;-Wno-maybe-uninitialized>)
-endif()
+set(DOWNWASH_PRECOMPILED ${precompiled} CACHE STRING "Compile headers of libraries once: ALL, TESTS (for the tests only) or OFF")
 
-# downwash_precompile(NAME HEADERS ... LIBRARIES ... [COLD]): the target NAME precompiles these headers and those of the standard
+# downwash_precompile(NAME HEADERS ... LIBRARIES ... [COLD] [TESTS]): the target NAME precompiles these headers and those of the standard
 # library, for targets to use; see downwash_use_precompiled().
 function(downwash_precompile NAME)
-  cmake_parse_arguments(HEADERS "COLD" "" "HEADERS;LIBRARIES" ${ARGN})
-  if(NOT DOWNWASH_PRECOMPILED)
+  cmake_parse_arguments(HEADERS "COLD;TESTS" "" "HEADERS;LIBRARIES" ${ARGN})
+  if(NOT DOWNWASH_PRECOMPILED STREQUAL "ALL" AND NOT (DOWNWASH_PRECOMPILED STREQUAL "TESTS" AND HEADERS_TESTS))
     return()
   endif()
   file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.cpp CONTENT "") # a target needs a source
@@ -33,8 +32,10 @@ endfunction()
 
 # Sources with options of their own have to read headers themselves: SKIP_PRECOMPILE_HEADERS.
 function(downwash_use_precompiled TARGET NAME)
-  if(DOWNWASH_PRECOMPILED)
+  if(TARGET ${NAME})
     target_precompile_headers(${TARGET} REUSE_FROM ${NAME})
+    target_compile_options(${TARGET} PRIVATE
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-stringop-overflow;-Wno-stringop-overread;-Wno-array-bounds;-Wno-maybe-uninitialized>)
   endif()
 endfunction()
 
