@@ -31,11 +31,15 @@ double observer_gain_1_s(const Robot& robot) {
     return observer ? observer->gain_1_s : 0;
 }
 
+/// A law that commands thrusts ahead of the rotors' lag.
+template <class Law>
+concept LeadsRotors = requires(const Law& law) { law.rotor_lead; };
+
 double rotor_lead_of(const Robot& robot) {
     return std::visit(
-        [](const auto& gain) {
-            if constexpr (requires { gain.rotor_lead; }) {
-                return gain.rotor_lead;
+        []<class Law>(const Law& law) {
+            if constexpr (LeadsRotors<Law>) {
+                return law.rotor_lead;
             } else {
                 return 0.0;
             }
