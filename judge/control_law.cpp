@@ -33,7 +33,9 @@ double observer_gain_1_s(const Robot& robot) {
 
 /// A law that commands thrusts ahead of the rotors' lag.
 template <class Law>
-concept LeadsRotors = requires(const Law& law) { law.rotor_lead; };
+concept LeadsRotors = requires(const Law& law) {
+    law.rotor_lead;
+};
 
 double rotor_lead_of(const Robot& robot) {
     return std::visit(
