@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -172,15 +173,15 @@ double pitch_along(const ReferencePoint& point) noexcept {
     return lane::atan2(point.acceleration[0], point.acceleration[1] + standard_gravity_m_s2);
 }
 
-MotionLimits limits_along(const MotionLimits& limits, double dx_m, double dz_m) noexcept {
-    const double distance_m = std::sqrt(dx_m * dx_m + dz_m * dz_m);
+MotionLimits limits_along(const MotionLimits& limits, const double (&way)[max_axes]) noexcept {
+    const double distance_m = translation(way);
     if (!limits.max_thrust_ratio || !(distance_m > 0)) {
         return limits;
     }
     // |a e + g|^2 = a^2 + 2 a g e_z + g^2 is largest where a points as far up as it can; where it points down,
     // something has to be left of g.
     constexpr double largest_fall = 0.99;
-    const double up = std::abs(dz_m) / distance_m;
+    const double up = std::abs(way[plane::z]) / distance_m;
     const double spare = *limits.max_thrust_ratio * *limits.max_thrust_ratio - 1;
     MotionLimits along = limits;
     along.max_acceleration_m_s2 =
@@ -190,7 +191,7 @@ MotionLimits limits_along(const MotionLimits& limits, double dx_m, double dz_m) 
 }
 
 MotionLimits limits_in_every_direction(const MotionLimits& limits) noexcept {
-    MotionLimits all = limits_along(limits, 0, 1);
+    MotionLimits all = limits_along(limits, {0, 1});
     if (limits.max_pitch_rate_rad_s) {
         // The direction of a force turns by its change over its size at most.
         all.max_acceleration_m_s2 = std::min(all.max_acceleration_m_s2, 0.9 * standard_gravity_m_s2);
@@ -213,24 +214,24 @@ double rest_to_rest_duration_s(double distance_m, double arm_rad, const MotionLi
 
 std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to, const MotionLimits& limits,
                             double tick_s) {
-    const double dx = to.position[0] - from.position[0];
-    const double dz = to.position[1] - from.position[1];
-    const double distance_m = std::sqrt(dx * dx + dz * dz);
-    const double arm_rad = std::abs(to.position[2] - from.position[2]);
+    double way[max_axes];
+    std::transform(to.position, to.position + max_axes, from.position, way, std::minus{});
+    const double distance_m = translation(way);
+    const double arm_rad = std::abs(way[2]);
     // A hair less than the exact duration must not cost a whole tick.
     const auto ticks_of = [tick_s](double duration_s) {
         return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(duration_s / tick_s - 1e-9)));
     };
     const bool is_from_rest_to_rest = is_at_rest(from) && is_at_rest(to);
     std::int64_t ticks = ticks_of(
-        rest_to_rest_duration_s(distance_m, arm_rad, is_from_rest_to_rest ? limits_along(limits, dx, dz) : limits));
+        rest_to_rest_duration_s(distance_m, arm_rad, is_from_rest_to_rest ? limits_along(limits, way) : limits));
     if (is_from_rest_to_rest && !limits.max_pitch_rate_rad_s) {
         return ticks;
     }
     // With a moving end, or a limit of the pitch rate, the shortest time has no closed form: begin with less than any
     // motion within the limits needs, stretch until they are kept, then close in on the last step.
-    const double change[3] = {to.velocity[0] - from.velocity[0], to.velocity[1] - from.velocity[1],
-                              to.velocity[2] - from.velocity[2]};
+    double change[max_axes];
+    std::transform(to.velocity, to.velocity + max_axes, from.velocity, change, std::minus{});
     const double braking_s = std::max(translation(change) / limits.max_acceleration_m_s2,
                                       std::abs(change[2]) / limits.max_arm_acceleration_rad_s2);
     if (!is_from_rest_to_rest) {

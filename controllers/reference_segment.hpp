@@ -38,8 +38,9 @@ struct MotionLimits {
 
 /// Limits of a motion from rest to rest along a straight line, in whose quintic the acceleration points both ways: the
 /// limit of acceleration is what a limit of the thrust leaves of it there.
-/// @param dx_m,dz_m its direction
-[[nodiscard]] DOWNWASH_EXPORT MotionLimits limits_along(const MotionLimits& limits, double dx_m, double dz_m) noexcept;
+/// @param way along each axis [m or rad], of any length; joints do not matter
+[[nodiscard]] DOWNWASH_EXPORT MotionLimits limits_along(const MotionLimits& limits,
+                                                        const double (&way)[max_axes]) noexcept;
 
 /// Limits of acceleration and jerk that keep those of thrust and pitch rate whichever way a reference leads.
 [[nodiscard]] DOWNWASH_EXPORT MotionLimits limits_in_every_direction(const MotionLimits& limits) noexcept;

@@ -33,14 +33,18 @@ MotionLimits harder_limits(MotionLimits limits, double times) {
 }
 
 /// Where a reference comes to rest.
-Configuration rest_of(const ReferencePoint& from, const MotionLimits& limits, const Maneuver& maneuver) {
-    const double speed_m_s = std::hypot(from.velocity[0], from.velocity[1]);
-    const MotionLimits straight = limits_along(limits, from.velocity[0], from.velocity[1]);
-    const double time_s = maneuver.farther * speed_m_s / straight.max_acceleration_m_s2;
-    const double arm_time_s = maneuver.farther * std::abs(from.velocity[2]) / limits.max_arm_acceleration_rad_s2;
-    return {from.position[0] + 0.5 * time_s * from.velocity[0],
-            from.position[1] + 0.5 * time_s * from.velocity[1] + maneuver.aside_m,
-            from.position[2] + 0.5 * arm_time_s * from.velocity[2]};
+Configuration rest_of(const ReferencePoint& from, std::span<const Axis> axes, const MotionLimits& limits,
+                      const Maneuver& maneuver) {
+    const double speed_m_s = std::hypot(from.velocity[plane::x], from.velocity[plane::z]);
+    const MotionLimits straight = limits_along(limits, from.velocity);
+    Configuration rest;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        const double rate = axes[i].group == AxisGroup::translation ? speed_m_s : std::abs(from.velocity[i]);
+        const double time_s = maneuver.farther * rate / max_acceleration(straight, axes[i].group);
+        rest[i] = from.position[i] + 0.5 * time_s * from.velocity[i];
+    }
+    rest[plane::z] += maneuver.aside_m;
+    return rest;
 }
 
 bool is_inside(const Bounds& bounds, const Configuration& at) {
@@ -99,7 +103,7 @@ std::vector<Braking::Try> Braking::all_tries(const ReferencePoint& from) const {
     std::vector<Try> tries;
     for (const Maneuver& maneuver : maneuvers) {
         const MotionLimits limits = harder_limits(problem_.motion, maneuver.harder);
-        const Configuration rest = rest_of(from, limits, maneuver);
+        const Configuration rest = rest_of(from, problem_.axes(), limits, maneuver);
         if (is_inside(problem_.bounds, rest)) {
             Plan plan{{{0, from}}, tick_s};
             plan.reference.push_back({shortest_ticks(from, at_rest(rest), limits, tick_s), at_rest(rest)});

@@ -26,7 +26,8 @@ namespace {
 
 std::string json_of(const CoreSolution& of) {
     const Problem& problem = of.of->problem();
-    return solution_json(of.solution, {problem.name, of.of->file, problem_sha256(problem), of.of->placed.warnings});
+    return solution_json(of.solution,
+                         {problem.name, of.of->file, problem_sha256(problem), of.of->placed.warnings, problem.axes()});
 }
 
 /// Writes the page of a run, if this build brings pages.
@@ -106,7 +107,8 @@ void bind_solution(py::module_& module) {
         .def("json", json_of)
         .def("plan", plan_columns)
         .def("flight", flight_columns)
-        .def("tree", [](const CoreSolution& of) { return columns_of(tree_table(of.solution.tree)); })
+        .def("tree",
+             [](const CoreSolution& of) { return columns_of(tree_table(of.solution.tree, of.of->problem().axes())); })
         .def("write", write);
     module.def("read_solution", read);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <vector>
 
 #include "downwash/base/version.hpp"
@@ -17,12 +18,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json tree_json(const NumberTable& tree) {
+Json tree_json(const NumberTable& tree, std::span<const Axis> axes) {
     if (tree.rows() == 0) {
         return {};
     }
     PackedNumbers packed;
-    for (const Axis& axis : planar_axes) {
+    for (const Axis& axis : axes) {
         const std::vector<double>& column = *tree.find(axis.position);
         packed.add(std::vector<float>(column.begin(), column.end()));
     }
@@ -83,7 +84,7 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, int th
               {"cost_unit", unit_of(problem.planner.objective)},
               {"effective_yaml", run.problem_text},
               {"flight", flight_json(run.flight)},
-              {"tree", tree_json(run.tree)}};
+              {"tree", tree_json(run.tree, problem.axes())}};
     add_problem(page, with_chosen_place(run, model), run.order, model, threads);
     return page_data(page);
 }

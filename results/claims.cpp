@@ -74,7 +74,7 @@ Claims read_claims(const std::string& path, const Problem& problem) {
     problems::read_document(path, [&](JsonReader& reader, const Node& root) {
         problems::read_objective(reader, root, claims.objective);
         reader.read_count(root, "seed", claims.seed);
-        problems::PlanText text = problems::read_plan(reader, root, 1 / problem.robot.controller.rate_hz);
+        problems::PlanText text = problems::read_plan(reader, root, problem);
         claims.plan = std::move(text.plan);
         claims.waypoints = std::move(text.waypoints);
         claims.order = problems::read_order(reader, root, problem);

@@ -17,17 +17,17 @@ std::optional<std::int64_t> tick_of(double t_s, double tick_s) {
     return static_cast<std::int64_t>(ticks);
 }
 
-ReferenceKnot read_knot(JsonReader& reader, const Node& node, double tick_s) {
+ReferenceKnot read_knot(JsonReader& reader, const Node& node, const Plan& plan) {
     ReferenceKnot knot;
     const double t_s = reader.required_number(node, "t_s");
-    if (const auto tick = tick_of(t_s, tick_s)) {
+    if (const auto tick = tick_of(t_s, plan.tick_s)) {
         knot.tick = *tick;
     } else {
         reader.report(node, "t_s is " + to_text(t_s) + ", expected a whole number of the robot's control ticks of " +
-                                to_text(tick_s) + " s, from 0 to " + std::to_string(max_plan_ticks) + " of them");
+                                to_text(plan.tick_s) + " s, from 0 to " + std::to_string(max_plan_ticks) + " of them");
     }
-    for (std::size_t i = 0; i < planar_axes.size(); ++i) {
-        const Axis& axis = planar_axes[i];
+    for (std::size_t i = 0; i < plan.axes.size(); ++i) {
+        const Axis& axis = plan.axes[i];
         knot.point.position[i] = reader.required_number(node, axis.position);
         knot.point.velocity[i] = reader.required_number(node, axis.velocity);
         knot.point.acceleration[i] = reader.required_number(node, axis.acceleration);
@@ -40,7 +40,7 @@ void read_reference(JsonReader& reader, const Node& list, Plan& plan) {
         if (reader.has_enough()) {
             return;
         }
-        const ReferenceKnot knot = read_knot(reader, node, plan.tick_s);
+        const ReferenceKnot knot = read_knot(reader, node, plan);
         if (plan.reference.empty() ? knot.tick != 0 : knot.tick <= plan.reference.back().tick) {
             reader.report(node, plan.reference.empty() ? "the first knot must stand at t_s 0"
                                                        : "t_s must be greater than that of the knot before");
@@ -51,32 +51,33 @@ void read_reference(JsonReader& reader, const Node& list, Plan& plan) {
 
 }  // namespace
 
-Configuration read_configuration(JsonReader& reader, const Node& group) {
+Configuration read_configuration(JsonReader& reader, const Node& group, std::span<const Axis> axes) {
     Configuration at;
-    for (std::size_t i = 0; i < planar_axes.size(); ++i) {
-        at[i] = reader.required_number(group, planar_axes[i].position);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        at[i] = reader.required_number(group, axes[i].position);
     }
     return at;
 }
 
 namespace {
 
-std::vector<Configuration> read_waypoints(JsonReader& reader, const Node& list) {
+std::vector<Configuration> read_waypoints(JsonReader& reader, const Node& list, std::span<const Axis> axes) {
     std::vector<Configuration> waypoints;
     for (const Node& node : reader.groups(list)) {
         if (reader.has_enough()) {
             break;
         }
-        waypoints.push_back(read_configuration(reader, node));
+        waypoints.push_back(read_configuration(reader, node, axes));
     }
     return waypoints;
 }
 
 }  // namespace
 
-PlanText read_plan(JsonReader& reader, const Node& root, double tick_s) {
+PlanText read_plan(JsonReader& reader, const Node& root, const Problem& problem) {
     PlanText text;
-    text.plan.tick_s = tick_s;
+    text.plan.tick_s = 1 / problem.robot.controller.rate_hz;
+    text.plan.axes = problem.axes();
     const auto node = reader.required(root, "plan");
     if (!node) {
         return text;
@@ -90,7 +91,7 @@ PlanText read_plan(JsonReader& reader, const Node& root, double tick_s) {
     text.reference_node = reader.required(*node, "reference");
     if (text.waypoints_node && text.reference_node) {
         read_reference(reader, *text.reference_node, text.plan);
-        text.waypoints = read_waypoints(reader, *text.waypoints_node);
+        text.waypoints = read_waypoints(reader, *text.waypoints_node, text.plan.axes);
     }
     if (reader.errors().empty() && text.plan.reference.empty()) {
         reader.report(*text.reference_node, "expected at least one knot");

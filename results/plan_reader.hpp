@@ -3,9 +3,11 @@
 // Private to results/.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "downwash/controllers/plan.hpp"
+#include "downwash/problems/problem.hpp"
 #include "downwash/results/json_reader.hpp"
 
 namespace downwash::problems {
@@ -18,9 +20,9 @@ struct PlanText {
 };
 
 /// Reads a coordinate for each axis; errors go to the reader.
-[[nodiscard]] Configuration read_configuration(JsonReader& reader, const Node& group);
+[[nodiscard]] Configuration read_configuration(JsonReader& reader, const Node& group, std::span<const Axis> axes);
 
-/// Reads `plan`; errors go to the reader. @param tick_s control period, on which knots have to stand
-[[nodiscard]] PlanText read_plan(JsonReader& reader, const Node& root, double tick_s);
+/// Reads `plan`; errors go to the reader. @param problem on whose control ticks knots have to stand
+[[nodiscard]] PlanText read_plan(JsonReader& reader, const Node& root, const Problem& problem);
 
 }  // namespace downwash::problems

@@ -183,7 +183,7 @@ RunRecord run_record(const Problem& problem, const Solution& solution, const Exe
     run.plan = solution.plan;
     run.order = solution.plan ? solution.order : std::nullopt;
     run.flight = trajectory_table(flight);
-    run.tree = tree_table(solution.tree);
+    run.tree = tree_table(solution.tree, problem.axes());
     return run;
 }
 
@@ -193,13 +193,14 @@ std::vector<std::pair<std::string, std::string>> run_files(const Problem& proble
                                                            const std::vector<LocatedError>& warnings) {
     std::vector<std::pair<std::string, std::string>> files{{"effective.yaml", effective_yaml(problem, folder)},
                                                            {"trajectory.csv", trajectory_csv(flight)},
-                                                           {"tree.csv", tree_csv(solution.tree)}};
+                                                           {"tree.csv", tree_csv(solution.tree, problem.axes())}};
     // effective.yaml depends on its folder; the digest of the problem stands for it.
     const FileDigests digests{{files[1].first, sha256_hex(files[1].second)},
                               {files[2].first, sha256_hex(files[2].second)}};
     files.emplace_back(
         solution_name,
-        solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings}, digests));
+        solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings, problem.axes()},
+                      digests));
     return files;
 }
 
@@ -229,7 +230,7 @@ RunRecord read_run(const fs::path& folder) {
     const fs::path tree = folder / "tree.csv";
     if (fs::exists(tree, ignored)) {
         const std::string tree_text = text_of(tree);
-        run.tree = read_number_table(tree_text, tree.string(), {"x_m", "z_m", "arm_rad", "parent"});
+        run.tree = read_number_table(tree_text, tree.string(), tree_table({}, run.problem.axes()).names);
         check_tree(tree, run.tree);
         check_file(tree, tree_text, claims.files);
     }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,10 @@ inline constexpr std::size_t max_solution_bytes = std::size_t{16} << 20U;
 /// How a solution names the problem that it solves.
 struct ProblemReference {
     std::string name;
-    std::string file;                         ///< as the user gave it
-    std::string sha256;                       ///< of the effective problem and every file that it refers to
-    std::vector<LocatedError> warnings = {};  ///< what was found when it was read, with its places
+    std::string file;                          ///< as the user gave it
+    std::string sha256;                        ///< of the effective problem and every file that it refers to
+    std::vector<LocatedError> warnings = {};   ///< what was found when it was read, with its places
+    std::span<const Axis> axes = planar_axes;  ///< what the numbers of configurations are; static
 };
 
 /// SHA-256 digests of files of a run by their names: they belong to this solution and to no other.

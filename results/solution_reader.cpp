@@ -44,10 +44,10 @@ void compare_waypoints(JsonReader& reader, const Node& list, const std::vector<C
 void check_start(JsonReader& reader, const Node& reference, const Plan& plan, const Start& start) {
     const Configuration begin = start.reference ? configuration_of(*start.reference) : start.configuration();
     if (!is_at(begin, plan.first())) {
-        const auto place = [](const Configuration& c) {
+        const auto place = [&plan](const Configuration& c) {
             std::string text;
-            for (std::size_t i = 0; i < planar_axes.size(); ++i) {
-                text += (i > 0 ? ", " : "") + std::string(planar_axes[i].position) + ' ' + to_text(c[i]);
+            for (std::size_t i = 0; i < plan.axes.size(); ++i) {
+                text += (i > 0 ? ", " : "") + std::string(plan.axes[i].position) + ' ' + to_text(c[i]);
             }
             return text;
         };
@@ -57,7 +57,7 @@ void check_start(JsonReader& reader, const Node& reference, const Plan& plan, co
 }
 
 void read_plan(JsonReader& reader, const Node& root, const Problem& problem, Solution& solution) {
-    problems::PlanText text = problems::read_plan(reader, root, 1 / problem.robot.controller.rate_hz);
+    problems::PlanText text = problems::read_plan(reader, root, problem);
     if (reader.errors().empty()) {
         compare_waypoints(reader, *text.waypoints_node, text.waypoints, text.plan);
         check_start(reader, *text.reference_node, text.plan, problem.start);
@@ -171,7 +171,7 @@ void read_head(JsonReader& reader, const Node& root, Solution& solution) {
     solution.cost = reader.amount(root, "cost", 0);
 }
 
-void read_stops(JsonReader& reader, const Node& root, double tick_s, std::optional<SafeStops>& into) {
+void read_stops(JsonReader& reader, const Node& root, const Plan& plan, std::optional<SafeStops>& into) {
     const auto node = JsonReader::member(root, "stops");
     if (!node || node->json->is_null()) {
         return;
@@ -184,11 +184,11 @@ void read_stops(JsonReader& reader, const Node& root, double tick_s, std::option
     stops.share_without = reader.amount(*node, "share_without", 0);
     for (const Node& each : reader.groups(JsonReader::member(*node, "moments"))) {
         SafeStops::Moment& moment = stops.moments.emplace_back();
-        moment.tick = std::llround(reader.amount(each, "t_s", 0) / tick_s);
+        moment.tick = std::llround(reader.amount(each, "t_s", 0) / plan.tick_s);
         bool is_safe = false;
         reader.read_flag(each, "safe", is_safe);
         if (const auto rest = JsonReader::member(each, "rest"); is_safe && rest) {
-            moment.rest = problems::read_configuration(reader, *rest);
+            moment.rest = problems::read_configuration(reader, *rest, plan.axes);
             moment.duration_s = reader.amount(each, "duration_s", 0);
         }
     }
@@ -214,7 +214,7 @@ Solution read_solution(const std::string& path, const Problem& problem) {
         read_planning(reader, root, solution);
         read_certificate(reader, root, solution.certificate);
         read_plan(reader, root, problem, solution);
-        read_stops(reader, root, solution.plan->tick_s, solution.stops);
+        read_stops(reader, root, *solution.plan, solution.stops);
         solution.order = problems::read_order(reader, root, problem);
     });
     return solution;

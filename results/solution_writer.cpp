@@ -1,5 +1,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "downwash/base/version.hpp"
 #include "downwash/results/solution_file.hpp"
@@ -19,20 +20,20 @@ Json number(const std::optional<double>& value) {
 }
 
 /// The coordinates of a configuration by the names of their axes.
-Json configuration_json(const Configuration& at) {
+Json configuration_json(const Configuration& at, std::span<const Axis> axes) {
     Json json;
-    for (std::size_t i = 0; i < planar_axes.size(); ++i) {
-        json[std::string(planar_axes[i].position)] = number(at[i]);
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        json[std::string(axes[i].position)] = number(at[i]);
     }
     return json;
 }
 
-Json obstruction_json(const std::optional<Obstruction>& obstruction) {
+Json obstruction_json(const std::optional<Obstruction>& obstruction, std::span<const Axis> axes) {
     if (!obstruction) {
         return {};
     }
     Json json = {{"cause", obstruction->cause}};
-    json.update(configuration_json(obstruction->at));
+    json.update(configuration_json(obstruction->at, axes));
     json["goal_distance_m"] = number(obstruction->goal_distance_m);
     return json;
 }
@@ -87,7 +88,7 @@ Json order_json(const VisitOrder& order) {
             {"cost_of_legs", number(order.cost_of_legs)}};
 }
 
-Json planning_json(const Found& found, const SearchRecord& record) {
+Json planning_json(const Found& found, const SearchRecord& record, std::span<const Axis> axes) {
     Json improvements = Json::array();
     for (const Improvement& improvement : record.improvements) {
         improvements.push_back({{"wall_s", number(improvement.wall_s)},
@@ -107,7 +108,7 @@ Json planning_json(const Found& found, const SearchRecord& record) {
             {"improvements", std::move(improvements)},
             {"rejected", record.rejected},
             {"nearest_approach_m", number(found.nearest_approach_m)},
-            {"obstruction", obstruction_json(found.obstruction)},
+            {"obstruction", obstruction_json(found.obstruction, axes)},
             {"goal", found.missed_goal ? Json(*found.missed_goal) : Json()}};
 }
 
@@ -131,13 +132,13 @@ Json plan_json(const std::optional<Plan>& plan) {
     Json waypoints = Json::array();
     Json reference = Json::array();
     for (const ReferenceKnot& knot : plan->reference) {
-        waypoints.push_back(configuration_json(configuration_of(knot.point)));
+        waypoints.push_back(configuration_json(configuration_of(knot.point), plan->axes));
         reference.push_back(knot_json(knot, *plan));
     }
     return {{"waypoints", std::move(waypoints)}, {"reference", std::move(reference)}};
 }
 
-Json stops_json(const std::optional<SafeStops>& stops, double tick_s) {
+Json stops_json(const std::optional<SafeStops>& stops, double tick_s, std::span<const Axis> axes) {
     if (!stops) {
         return {};
     }
@@ -145,7 +146,7 @@ Json stops_json(const std::optional<SafeStops>& stops, double tick_s) {
     for (const SafeStops::Moment& moment : stops->moments) {
         Json each = {{"t_s", static_cast<double>(moment.tick) * tick_s}, {"safe", moment.rest.has_value()}};
         if (moment.rest) {
-            each["rest"] = configuration_json(*moment.rest);
+            each["rest"] = configuration_json(*moment.rest, axes);
             each["duration_s"] = moment.duration_s;
         }
         moments.push_back(std::move(each));
@@ -228,10 +229,10 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"version", version()},
         {"threads", solution.threads},
         {"cost", solution.plan ? number(solution.cost) : Json()},
-        {"planning", planning_json(solution, solution.planning)},
+        {"planning", planning_json(solution, solution.planning, problem.axes)},
         {"certificate", certificate_json(solution.certificate)},
         {"plan", plan_json(solution.plan)},
-        {"stops", stops_json(solution.stops, solution.plan ? solution.plan->tick_s : 0)},
+        {"stops", stops_json(solution.stops, solution.plan ? solution.plan->tick_s : 0, problem.axes)},
         {"execution", execution_json(solution)},
         {"files", files},
     };

@@ -7,14 +7,14 @@
 
 namespace downwash {
 
-std::string tree_csv(std::span<const TreeNode> tree) {
+std::string tree_csv(std::span<const TreeNode> tree, std::span<const Axis> axes) {
     std::string text;
-    for (const Axis& axis : planar_axes) {
+    for (const Axis& axis : axes) {
         text += std::string(axis.position) + ',';
     }
     text += "parent\n";
     for (const TreeNode& node : tree) {
-        for (std::size_t i = 0; i < planar_axes.size(); ++i) {
+        for (std::size_t i = 0; i < axes.size(); ++i) {
             text += to_text(node.at[i]) + ',';
         }
         text += node.parent == TreeNode::no_parent ? "" : std::to_string(node.parent);
@@ -23,15 +23,15 @@ std::string tree_csv(std::span<const TreeNode> tree) {
     return text;
 }
 
-NumberTable tree_table(std::span<const TreeNode> tree) {
+NumberTable tree_table(std::span<const TreeNode> tree, std::span<const Axis> axes) {
     NumberTable table;
-    for (const Axis& axis : planar_axes) {
+    for (const Axis& axis : axes) {
         table.names.emplace_back(axis.position);
     }
     table.names.emplace_back("parent");
     table.columns.resize(table.names.size());
     for (const TreeNode& node : tree) {
-        const auto end = node.at.coordinate.begin() + planar_axes.size();
+        const auto end = node.at.coordinate.begin() + axes.size();
         std::vector<double> row(node.at.coordinate.begin(), end);
         row.push_back(node.parent == TreeNode::no_parent ? NAN : static_cast<double>(node.parent));
         table.add_row(row);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 namespace downwash::planning {
@@ -16,25 +17,19 @@ namespace oc = ompl::control;
 /// A reference velocity or, for our own planner, a reference segment.
 class FlightControl : public oc::RealVectorControlSpace::ControlType {
  public:
+    FlightControl() { values = velocity; }
+
+    double velocity[max_axes]{};     ///< where OMPL's `values` point
     std::int64_t segment_ticks = 0;  ///< 0: a velocity
     ReferencePoint segment_end;
 };
 
 class FlightControlSpace : public oc::RealVectorControlSpace {
  public:
-    explicit FlightControlSpace(const ob::StateSpacePtr& states)
-        : oc::RealVectorControlSpace(states, planar_axes.size()) {}
+    using oc::RealVectorControlSpace::RealVectorControlSpace;
 
-    oc::Control* allocControl() const override {
-        auto* control = new FlightControl;
-        control->values = new double[dimension_];
-        return control;
-    }
-    void freeControl(oc::Control* control) const override {
-        auto* own = static_cast<FlightControl*>(control);
-        delete[] own->values;
-        delete own;
-    }
+    oc::Control* allocControl() const override { return new FlightControl; }
+    void freeControl(oc::Control* control) const override { delete static_cast<FlightControl*>(control); }
     void copyControl(oc::Control* to, const oc::Control* from) const override {
         oc::RealVectorControlSpace::copyControl(to, from);
         static_cast<FlightControl*>(to)->segment_ticks = static_cast<const FlightControl*>(from)->segment_ticks;
@@ -55,25 +50,38 @@ class FlightControlSpace : public oc::RealVectorControlSpace {
 /// Velocities in all directions alike, and durations, with the caller's generator.
 class VelocitySampler : public oc::ControlSampler {
  public:
-    VelocitySampler(const oc::ControlSpace* controls, const MotionLimits& limits, Random& random)
-        : oc::ControlSampler(controls), limits_(limits), random_(random) {}
+    VelocitySampler(const oc::ControlSpace* controls, std::span<const Axis> axes, const MotionLimits& limits,
+                    Random& random)
+        : oc::ControlSampler(controls), axes_(axes), limits_(limits), random_(random) {}
 
     void sample(oc::Control* control) override {
-        static_cast<FlightControl*>(control)->segment_ticks = 0;
-        double* velocity = control->as<oc::RealVectorControlSpace::ControlType>()->values;
+        auto* own = static_cast<FlightControl*>(control);
+        own->segment_ticks = 0;
+        double squares = 0;
         do {
-            velocity[plane::x] = random_.uniform(-1, 1);
-            velocity[plane::z] = random_.uniform(-1, 1);
-        } while (velocity[plane::x] * velocity[plane::x] + velocity[plane::z] * velocity[plane::z] > 1);
-        velocity[plane::x] *= limits_.max_speed_m_s;
-        velocity[plane::z] *= limits_.max_speed_m_s;
-        velocity[plane::arm] = random_.uniform(-limits_.max_arm_rate_rad_s, limits_.max_arm_rate_rad_s);
+            squares = 0;
+            for (std::size_t i = 0; i < axes_.size(); ++i) {
+                if (axes_[i].group == AxisGroup::translation) {
+                    own->velocity[i] = random_.uniform(-1, 1);
+                    squares += own->velocity[i] * own->velocity[i];
+                }
+            }
+        } while (squares > 1);
+        for (std::size_t i = 0; i < axes_.size(); ++i) {
+            const double most = max_rate(limits_, axes_[i].group);
+            if (axes_[i].group == AxisGroup::translation) {
+                own->velocity[i] *= most;
+            } else {
+                own->velocity[i] = random_.uniform(-most, most);
+            }
+        }
     }
     unsigned int sampleStepCount(unsigned int least, unsigned int most) override {
         return static_cast<unsigned int>(random_.uniform(least, most + 1.0));
     }
 
  private:
+    std::span<const Axis> axes_;
     MotionLimits limits_;
     Random& random_;
 };
@@ -115,7 +123,7 @@ class ClosingGoal : public FlightGoal {
 
 void follow(oc::Control* control, const ReferencePoint& to, std::int64_t ticks) {
     auto* own = static_cast<FlightControl*>(control);
-    std::fill_n(own->values, planar_axes.size(), 0.0);
+    std::ranges::fill(own->velocity, 0.0);
     own->segment_end = to;
     own->segment_ticks = ticks;
 }
@@ -126,18 +134,21 @@ const double* velocity_of(const oc::Control* control) {
 
 oc::SpaceInformationPtr make_flight_information(const SteeredFlights& flights, Random& random) {
     const auto states = make_flight_space(flights.task(), random);
-    const auto controls = std::make_shared<FlightControlSpace>(states);
+    const std::span<const Axis> axes = flights.task().problem.axes();
+    const auto count = static_cast<unsigned int>(axes.size());
+    const auto controls = std::make_shared<FlightControlSpace>(states, count);
     const MotionLimits& limits = flights.flights().limits();
-    ob::RealVectorBounds bounds(planar_axes.size());
-    for (unsigned int i = 0; i < planar_axes.size(); ++i) {
-        const double most = max_rate(limits, planar_axes[i].group);
+    ob::RealVectorBounds bounds(count);
+    for (unsigned int i = 0; i < count; ++i) {
+        const double most = max_rate(limits, axes[i].group);
         bounds.setLow(i, -most);
         bounds.setHigh(i, most);
     }
     controls->setBounds(bounds);
-    controls->setControlSamplerAllocator([&limits, &random](const oc::ControlSpace* space) -> oc::ControlSamplerPtr {
-        return std::make_shared<VelocitySampler>(space, limits, random);
-    });
+    controls->setControlSamplerAllocator(
+        [axes, &limits, &random](const oc::ControlSpace* space) -> oc::ControlSamplerPtr {
+            return std::make_shared<VelocitySampler>(space, axes, limits, random);
+        });
     auto information = std::make_shared<oc::SpaceInformation>(states, controls);
     information->setStatePropagator(std::make_shared<Propagator>(information, flights));
     information->setStateValidityChecker(make_flight_validity(information));

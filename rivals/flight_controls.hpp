@@ -27,7 +27,7 @@ inline constexpr unsigned int max_control_steps = 8;
 /// `to`, in a single step whatever its length. So our planner's edges are controls too.
 void follow(ompl::control::Control* control, const ReferencePoint& to, std::int64_t ticks);
 
-/// The reference velocity that a control of that space asks for: (x, z, arm) [m/s, m/s, rad/s].
+/// The reference velocity that a control of that space asks for, along each axis [m/s or rad/s].
 [[nodiscard]] const double* velocity_of(const ompl::control::Control* control);
 
 /// Every moment of a path, one step or reference segment apart, simulated once more: OMPL keeps only those at which the

@@ -14,10 +14,10 @@ constexpr double peak_acceleration = 1.5;  // of gain / duration
 constexpr double peak_jerk = 6;            // of gain / duration^2
 
 /// The length of the translations among some rates.
-double speed_of(const double rates[max_axes]) {
+double speed_of(const double rates[max_axes], std::span<const Axis> axes) {
     double squares = 0;
-    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
-        if (planar_axes[axis].group == AxisGroup::translation) {
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+        if (axes[axis].group == AxisGroup::translation) {
             squares += rates[axis] * rates[axis];
         }
     }
@@ -25,10 +25,10 @@ double speed_of(const double rates[max_axes]) {
 }
 
 /// Shortens the translations together to a length and each joint to another; leaves shorter ones alone.
-void shorten(double rates[max_axes], double length, double joint) {
-    const double now = speed_of(rates);
-    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
-        if (planar_axes[axis].group == AxisGroup::joint) {
+void shorten(double rates[max_axes], std::span<const Axis> axes, double length, double joint) {
+    const double now = speed_of(rates, axes);
+    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+        if (axes[axis].group == AxisGroup::joint) {
             rates[axis] = std::clamp(rates[axis], -joint, joint);
         } else if (now > length) {
             rates[axis] *= length / now;
@@ -45,8 +45,9 @@ double braking_way(double speed, double gain, double step_s) {
 
 }  // namespace
 
-ReferenceSteps::ReferenceSteps(const MotionLimits& limits, double tick_s)
-    : limits_(limits_in_every_direction(limits)),
+ReferenceSteps::ReferenceSteps(std::span<const Axis> axes, const MotionLimits& limits, double tick_s)
+    : axes_(axes),
+      limits_(limits_in_every_direction(limits)),
       ticks_(std::max<std::int64_t>(1, std::llround(wanted_step_s / tick_s))),
       duration_s_(static_cast<double>(ticks_) * tick_s),
       speed_gain_m_s_(std::min(limits_.max_acceleration_m_s2 * duration_s_ / peak_acceleration,
@@ -56,9 +57,9 @@ ReferenceSteps::ReferenceSteps(const MotionLimits& limits, double tick_s)
 ReferencePoint ReferenceSteps::after(const ReferencePoint& from, const double velocity[max_axes]) const noexcept {
     double wanted[max_axes], gain[max_axes];
     std::copy_n(velocity, max_axes, wanted);
-    shorten(wanted, limits_.max_speed_m_s, limits_.max_arm_rate_rad_s);
+    shorten(wanted, axes_, limits_.max_speed_m_s, limits_.max_arm_rate_rad_s);
     std::transform(wanted, wanted + max_axes, from.velocity, gain, std::minus{});
-    shorten(gain, speed_gain_m_s_, arm_gain_rad_s_);
+    shorten(gain, axes_, speed_gain_m_s_, arm_gain_rad_s_);
     ReferencePoint next;
     for (std::size_t axis = 0; axis < max_axes; ++axis) {
         next.velocity[axis] = from.velocity[axis] + gain[axis];
@@ -68,9 +69,9 @@ ReferencePoint ReferenceSteps::after(const ReferencePoint& from, const double ve
 }
 
 double ReferenceSteps::braking_ticks(const ReferencePoint& from) const noexcept {
-    double steps = std::ceil(speed_of(from.velocity) / speed_gain_m_s_);
-    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
-        if (planar_axes[axis].group == AxisGroup::joint) {
+    double steps = std::ceil(speed_of(from.velocity, axes_) / speed_gain_m_s_);
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+        if (axes_[axis].group == AxisGroup::joint) {
             steps = std::max(steps, std::ceil(std::abs(from.velocity[axis]) / arm_gain_rad_s_));
         }
     }
@@ -78,10 +79,10 @@ double ReferenceSteps::braking_ticks(const ReferencePoint& from) const noexcept 
 }
 
 Configuration ReferenceSteps::rest_of(const ReferencePoint& from) const noexcept {
-    const double speed = speed_of(from.velocity);
+    const double speed = speed_of(from.velocity, axes_);
     Configuration rest;
-    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
-        const bool is_joint = planar_axes[axis].group == AxisGroup::joint;
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+        const bool is_joint = axes_[axis].group == AxisGroup::joint;
         const double rate = is_joint ? std::abs(from.velocity[axis]) : speed;
         const double gain = is_joint ? arm_gain_rad_s_ : speed_gain_m_s_;
         const double braking_s = rate > 0 ? braking_way(rate, gain, duration_s_) / rate : 0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "downwash/search/search_space.hpp"
 
@@ -11,9 +12,10 @@ namespace downwash::planning {
 /// of a flight are the segments of a Plan, to the last bit.
 class ReferenceSteps {
  public:
+    /// @param axes static
     /// @param tick_s length of a control tick; a step is the whole number of them nearest to half a second, at least
     /// one
-    ReferenceSteps(const MotionLimits& limits, double tick_s);
+    ReferenceSteps(std::span<const Axis> axes, const MotionLimits& limits, double tick_s);
 
     [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
     [[nodiscard]] double duration_s() const noexcept { return duration_s_; }
@@ -30,6 +32,7 @@ class ReferenceSteps {
     [[nodiscard]] double braking_ticks(const ReferencePoint& from) const noexcept;
 
  private:
+    std::span<const Axis> axes_;
     MotionLimits limits_;
     std::int64_t ticks_;
     double duration_s_;

@@ -16,7 +16,9 @@ bool stands_still(const ReferencePoint& point) {
 }  // namespace
 
 SteeredFlights::SteeredFlights(PlannedFlights& flights)
-    : flights_(flights), task_(flights.task()), steps_(flights.limits(), task_.model.tick().tick_s) {}
+    : flights_(flights),
+      task_(flights.task()),
+      steps_(task_.problem.axes(), flights.limits(), task_.model.tick().tick_s) {}
 
 FlightPoint SteeredFlights::start() const {
     FlightPoint point = start_point(task_);
@@ -117,7 +119,7 @@ Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::opt
     if (end) {
         plan.reference.push_back(end->goal);
     } else {
-        constexpr double still[3] = {0, 0, 0};
+        constexpr double still[max_axes]{};
         while (!stands_still(plan.reference.back().point)) {
             const ReferenceKnot& last = plan.reference.back();
             plan.reference.push_back({last.tick + steps_.ticks(), steps_.after(last.point, still)});

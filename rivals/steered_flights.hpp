@@ -33,7 +33,7 @@ class SteeredFlights {
     [[nodiscard]] FlightPoint start() const;
 
     /// Flies one step with the reference taking on a velocity. The tick at which a rule is broken ends the step.
-    /// @param velocity wanted of (x, z, arm) [m/s, m/s, rad/s]
+    /// @param velocity wanted along each axis [m/s or rad/s]
     [[nodiscard]] FlightPoint stepped(const FlightPoint& from, const double velocity[max_axes]) const;
 
     /// A step that was flown before, flown again: neither counted, nor cut short when the search is over.

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <ostream>
+#include <span>
 #include <type_traits>
 
 #include "downwash/base/lane_math.hpp"
@@ -119,8 +120,9 @@ class FlightSpace : public ob::StateSpace {
     void printState(const ob::State* state, std::ostream& out) const override {
         const Configuration at = configuration_of(point_of(state).vehicle.plant.q);
         out << "vehicle at";
-        for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
-            out << ' ' << planar_axes[axis].position << ' ' << at[axis];
+        const std::span<const Axis> axes = task_.problem.axes();
+        for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+            out << ' ' << axes[axis].position << ' ' << at[axis];
         }
         out << '\n';
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "downwash/dynamics/flight_step.hpp"
 
@@ -32,16 +33,17 @@ FreeAirCost::FreeAirCost(const SearchTask& task)
 
 double FreeAirCost::of_motion(const Configuration& from, const Configuration& to) const {
     const double turn = space_.turn_rad(from, to);
-    const MotionLimits limits = limits_along(limits_, to[plane::x] - from[plane::x], to[plane::z] - from[plane::z]);
-    const double duration_s = rest_to_rest_duration_s(travel_m(from, to), turn, limits);
+    double way[max_axes];
+    std::transform(to.coordinate.begin(), to.coordinate.end(), from.coordinate.begin(), way, std::minus{});
+    const double duration_s = rest_to_rest_duration_s(space_.travel_m(from, to), turn, limits_along(limits_, way));
     const double density = counts_clearance_ ? mean_clearance_density(from, space_.seen_from(from, to)) : 0;
     return objective_({{space_.distance_m(from, to)}, hover_power_w_ * duration_s, duration_s, duration_s * density});
 }
 
 double FreeAirCost::min_cost_of_motion(const Configuration& from, const Configuration& to) const {
     const double turn = space_.turn_rad(from, to);
-    const double duration_s =
-        peak_over_mean_speed * std::max(travel_m(from, to) / limits_.max_speed_m_s, turn / limits_.max_arm_rate_rad_s);
+    const double duration_s = peak_over_mean_speed * std::max(space_.travel_m(from, to) / limits_.max_speed_m_s,
+                                                              turn / limits_.max_arm_rate_rad_s);
     // Far from everything clearance costs next to nothing.
     return objective_({{space_.distance_m(from, to)}, hover_power_w_ * duration_s, duration_s, 0});
 }

@@ -114,8 +114,12 @@ class StraightMotion : public ob::MotionValidator {
                      std::pair<ob::State*, double>& last_valid) const override {
         const Configuration a = read(from, space_);
         const Configuration b = space_.seen_from(a, read(to, space_));
-        const double arm_length_m = 2 * space_.arm_weight_m();
-        const double motion_m = travel_m(a, b) + arm_length_m * std::abs(b[plane::arm] - a[plane::arm]);
+        double motion_m = space_.travel_m(a, b);
+        for (std::size_t axis = 0; axis < space_.axes().size(); ++axis) {
+            if (space_.axes()[axis].group == AxisGroup::joint) {
+                motion_m += 2 * space_.axes()[axis].weight_m * std::abs(b[axis] - a[axis]);
+            }
+        }
         const int steps = static_cast<int>(std::ceil(motion_m / step_m_)) + 1;
         for (int i = 1; i <= steps; ++i) {
             const Configuration c = between(a, b, static_cast<double>(i) / steps);

@@ -16,7 +16,7 @@
 
 namespace downwash::planning {
 
-/// Space information over (x, z) and the arm (a circle, or an interval where it has limits) with sampler, validity and
+/// Space information over all axes (a joint is a circle, or an interval where it has limits) with sampler, validity and
 /// straight-line motions of the level vehicle. The arguments must outlive it.
 [[nodiscard]] ompl::base::SpaceInformationPtr make_space_information(const SearchSpace& space, Random& random,
                                                                      double motion_step_m, QueryCounts& counts);

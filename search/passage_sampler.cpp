@@ -95,7 +95,7 @@ PassageSampler::Through PassageSampler::beside_known(Random& random) const {
     Through through = known_[index_below(known_.size(), random)];
     ReferencePoint& point = through.point;
     const double force_m_s2 = force_change * limits_.max_thrust_ratio.value_or(0) * standard_gravity_m_s2;
-    for (const std::size_t axis : {plane::x, plane::z}) {
+    for (const std::size_t axis : space_.translations()) {
         point.position[axis] += shift_m * random.uniform(-1, 1);
         point.velocity[axis] += speed_change * limits_.max_speed_m_s * random.uniform(-1, 1);
         point.acceleration[axis] += force_m_s2 * random.uniform(-1, 1);
@@ -129,7 +129,7 @@ std::optional<ReferencePoint> PassageSampler::rest_beside(const Through& through
         const double t = static_cast<double>(ticks) * tick_s_;
         ReferencePoint rest = at_rest(configuration_of(point));
         double ahead_m = 0;
-        for (const std::size_t axis : {plane::x, plane::z}) {
+        for (const std::size_t axis : space_.translations()) {
             // The way of the cubic of speed between both ends, which has the least jerk.
             const double step_m = side * point.velocity[axis] * t / 2 + point.acceleration[axis] * t * t / 12;
             rest.position[axis] += step_m;

@@ -43,7 +43,7 @@ class PassageSampler {
     /// A point at speed in a passage.
     struct Through {
         ReferencePoint point;
-        double along[2];  ///< direction along the passage, in x and z; of unit length
+        double along[max_axes];  ///< direction along the passage, over the translations; of unit length
     };
     struct FoundPassage {
         Through through;

@@ -121,7 +121,7 @@ ChangedPoints PlanChanges::with_corner_changed(Points points, double kind, doubl
 void PlanChanges::fly_through(Points& points, std::size_t corner) {
     const Configuration before = configuration_of(points[corner - 1]);
     const Configuration after = configuration_of(points[corner + 1]);
-    const double per_metre = 1 / std::max(travel_m(before, after), 1e-3);
+    const double per_metre = 1 / std::max(space_.travel_m(before, after), 1e-3);
     const double speed_m_s = random_.uniform(0, 1) * motion_.max_speed_m_s;
     ReferencePoint& p = points[corner];
     for (std::size_t i = 0; i < space_.axes().size(); ++i) {

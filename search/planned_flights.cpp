@@ -135,10 +135,10 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     const ReferencePoint& a = segment.from();
     const ReferencePoint& b = segment.to();
     const double arm_m = task_.problem.robot.arm.length_m;
-    const auto weighted = [arm_m](const double* v) {
+    const auto weighted = [arm_m, axes = task_.space.axes()](const double* v) {
         double sum_m = 0;
-        for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
-            sum_m += (planar_axes[axis].group == AxisGroup::translation ? 1 : arm_m) * std::abs(v[axis]);
+        for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+            sum_m += (axes[axis].group == AxisGroup::translation ? 1 : arm_m) * std::abs(v[axis]);
         }
         return sum_m;
     };

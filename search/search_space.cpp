@@ -20,17 +20,6 @@ ReferencePoint reference_at(const Start& start) noexcept {
     return point;
 }
 
-double travel_m(const Configuration& a, const Configuration& b) noexcept {
-    double squares = 0;
-    for (std::size_t axis = 0; axis < planar_axes.size(); ++axis) {
-        if (planar_axes[axis].group == AxisGroup::translation) {
-            const double way = b[axis] - a[axis];
-            squares += way * way;
-        }
-    }
-    return std::sqrt(squares);
-}
-
 Configuration between(const Configuration& a, const Configuration& b, double s) noexcept {
     Configuration c;
     for (std::size_t axis = 0; axis < max_axes; ++axis) {
@@ -56,7 +45,13 @@ SearchSpace::SearchSpace(const Problem& problem, const FlightModel& model)
       axes_(search_axes(problem.bounds, problem.robot.arm)),
       goal_(problem.goal),
       arm_weight_m_(0.5 * problem.robot.arm.length_m),
-      margin_m_(problem.planner.safety_margin_m) {}
+      margin_m_(problem.planner.safety_margin_m) {
+    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
+        if (axes_[axis].group == AxisGroup::translation) {
+            translations_.push_back(axis);
+        }
+    }
+}
 
 double SearchSpace::way(std::size_t axis, double from, double to) const noexcept {
     return axes_[axis].wraps ? lane::wrap_angle(to - from) : to - from;
@@ -79,6 +74,15 @@ Configuration SearchSpace::seen_from(const Configuration& from, Configuration to
         }
     }
     return to;
+}
+
+double SearchSpace::travel_m(const Configuration& a, const Configuration& b) const noexcept {
+    double squares = 0;
+    for (const std::size_t axis : translations_) {
+        const double way = b[axis] - a[axis];
+        squares += way * way;
+    }
+    return std::sqrt(squares);
 }
 
 double SearchSpace::distance_m(const Configuration& a, const Configuration& b) const noexcept {

@@ -15,9 +15,6 @@ namespace downwash::planning {
 /// The reference at the start of a problem: the one point of a plan that may move.
 [[nodiscard]] ReferencePoint reference_at(const Start& start) noexcept;
 
-/// Straight distance of the vehicle's positions [m].
-[[nodiscard]] double travel_m(const Configuration& a, const Configuration& b) noexcept;
-
 /// The point at the share s of the straight line from a to b, arm angles taken as they stand.
 [[nodiscard]] Configuration between(const Configuration& a, const Configuration& b, double s) noexcept;
 
@@ -41,6 +38,9 @@ class SearchSpace {
     /// The axes in the order of a configuration's coordinates.
     [[nodiscard]] std::span<const SearchAxis> axes() const noexcept { return axes_; }
 
+    /// Indices of the axes that are translations.
+    [[nodiscard]] std::span<const std::size_t> translations() const noexcept { return translations_; }
+
     /// Metres that one radian of the arm counts for: half the arm's length.
     [[nodiscard]] double arm_weight_m() const noexcept { return arm_weight_m_; }
 
@@ -52,6 +52,9 @@ class SearchSpace {
 
     /// `to` with the angles that wrap unwrapped so that they are reached from `from` by the shorter turn.
     [[nodiscard]] Configuration seen_from(const Configuration& from, Configuration to) const noexcept;
+
+    /// Straight distance of the vehicle's positions [m].
+    [[nodiscard]] double travel_m(const Configuration& a, const Configuration& b) const noexcept;
 
     /// The square root of the weighted squares of the ways along all axes [m]: sqrt(dx^2 + dz^2 + (w darm)^2).
     [[nodiscard]] double distance_m(const Configuration& a, const Configuration& b) const noexcept;
@@ -125,6 +128,7 @@ class SearchSpace {
 
     const FlightModel& model_;
     std::vector<SearchAxis> axes_;
+    std::vector<std::size_t> translations_;
     Goal goal_;
     double arm_weight_m_;
     double margin_m_;

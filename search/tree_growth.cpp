@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <unordered_set>
 #include <utility>
 
@@ -24,8 +25,8 @@ std::vector<FlightNode*> with_ancestors(const std::vector<FlightNode*>& nodes) {
 }
 
 /// The distance of a place from the straight lines between the points of a way [m].
-double distance_from_way_m(const Configuration& place, const std::vector<ReferencePoint>& way) {
-    constexpr std::size_t translations[] = {plane::x, plane::z};
+double distance_from_way_m(const Configuration& place, const std::vector<ReferencePoint>& way,
+                           std::span<const std::size_t> translations) {
     double nearest_m = HUGE_VAL;
     for (std::size_t i = 1; i < way.size(); ++i) {
         const Configuration a = configuration_of(way[i - 1]);
@@ -301,7 +302,7 @@ const FlightNode* TreeGrowth::hold_away_from(const std::vector<ReferencePoint>& 
         const FlightNode* hold = holds[static_cast<std::size_t>(random_.uniform(0, static_cast<double>(holds.size())))];
         double away_m = 0;
         for (const FlightNode* n = hold->parent; n != nullptr; n = n->parent) {
-            away_m = std::max(away_m, distance_from_way_m(n->configuration, way));
+            away_m = std::max(away_m, distance_from_way_m(n->configuration, way, space_.translations()));
         }
         if (!hold->is_discarded && away_m > farthest_m) {
             farthest_m = away_m;

@@ -313,17 +313,17 @@ TEST_CASE("agile segments keep thrust and pitch rate at every tick, and hardly l
 TEST_CASE("straight up a thrust ratio of 1.3 leaves 0.3 g, sideways the tilt of 39.7 degrees") {
     MotionLimits agile{100, 100, 10, 100, 10000, {}, {}};
     agile.max_thrust_ratio = 1.3;
-    CHECK(limits_along(agile, 0, 2).max_acceleration_m_s2 == Approx(0.3 * g_m_s2));
-    CHECK(limits_along(agile, 0, -1).max_acceleration_m_s2 == Approx(0.3 * g_m_s2));
-    CHECK(limits_along(agile, -3, 0).max_acceleration_m_s2 == Approx(std::sqrt(0.69) * g_m_s2));
-    CHECK(limits_along(limits, 1, 2).max_acceleration_m_s2 == limits.max_acceleration_m_s2);
+    CHECK(limits_along(agile, {0, 2}).max_acceleration_m_s2 == Approx(0.3 * g_m_s2));
+    CHECK(limits_along(agile, {0, -1}).max_acceleration_m_s2 == Approx(0.3 * g_m_s2));
+    CHECK(limits_along(agile, {-3, 0}).max_acceleration_m_s2 == Approx(std::sqrt(0.69) * g_m_s2));
+    CHECK(limits_along(limits, {1, 2}).max_acceleration_m_s2 == limits.max_acceleration_m_s2);
     // Without a limit of the pitch rate the fastest motion from rest to rest is known: peak 10 / sqrt(3) d / t^2.
     const double duration_s = std::sqrt(10 / std::sqrt(3.0) / (0.3 * g_m_s2));
     CHECK(shortest_ticks(rest_at(0, 0, 0), rest_at(0, 1, 0), agile, tick_s) ==
           std::llround(std::ceil(duration_s / tick_s)));
     // A fast fall needs some force, too.
     agile.max_thrust_ratio = 3;
-    CHECK(limits_along(agile, 0, 1).max_acceleration_m_s2 < g_m_s2);
+    CHECK(limits_along(agile, {0, 1}).max_acceleration_m_s2 < g_m_s2);
 }
 
 TEST_CASE("limits in every direction keep those of thrust and pitch rate whichever way a reference leads") {

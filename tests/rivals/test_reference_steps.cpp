@@ -15,16 +15,16 @@ constexpr double still[3] = {0, 0, 0};
 }  // namespace
 
 TEST_CASE("a step is the whole number of ticks nearest to half a second") {
-    CHECK(ReferenceSteps(limits, 0.01).ticks() == 50);
-    CHECK(ReferenceSteps(limits, 0.01).duration_s() == Approx(0.5));
-    CHECK(ReferenceSteps(limits, 0.3).ticks() == 2);
-    CHECK(ReferenceSteps(limits, 2.0).ticks() == 1);
+    CHECK(ReferenceSteps(planar_axes, limits, 0.01).ticks() == 50);
+    CHECK(ReferenceSteps(planar_axes, limits, 0.01).duration_s() == Approx(0.5));
+    CHECK(ReferenceSteps(planar_axes, limits, 0.3).ticks() == 2);
+    CHECK(ReferenceSteps(planar_axes, limits, 2.0).ticks() == 1);
 }
 
 TEST_CASE("from rest a step gains two thirds of what the greatest acceleration would") {
     MotionLimits any_jerk = limits;
     any_jerk.max_jerk_m_s3 = 100;
-    const ReferenceSteps steps(any_jerk, 0.01);
+    const ReferenceSteps steps(planar_axes, any_jerk, 0.01);
     const double wanted[3] = {10, 0, -10};
     const ReferencePoint next = steps.after(ReferencePoint{}, wanted);
     CHECK(next.velocity[0] == Approx(1.0 / 6));
@@ -41,7 +41,7 @@ TEST_CASE("from rest a step gains two thirds of what the greatest acceleration w
 TEST_CASE("from rest a step gains a sixth of what the greatest jerk would in its time squared") {
     MotionLimits smooth = limits;
     smooth.max_jerk_m_s3 = 1.2;
-    const ReferenceSteps steps(smooth, 0.01);
+    const ReferenceSteps steps(planar_axes, smooth, 0.01);
     const double wanted[3] = {10, 0, 0};
     const ReferencePoint next = steps.after(ReferencePoint{}, wanted);
     CHECK(next.velocity[0] == Approx(1.2 * 0.5 * 0.5 / 6));
@@ -49,7 +49,7 @@ TEST_CASE("from rest a step gains a sixth of what the greatest jerk would in its
 }
 
 TEST_CASE("whatever is asked for, every tick keeps the limits") {
-    const ReferenceSteps steps(limits, 0.01);
+    const ReferenceSteps steps(planar_axes, limits, 0.01);
     test::Random random(7);
     ReferencePoint point;
     double fastest = 0;
@@ -71,7 +71,7 @@ TEST_CASE("whatever is asked for, every tick keeps the limits") {
 }
 
 TEST_CASE("the place of rest is where braking step by step ends") {
-    const ReferenceSteps steps(limits, 0.01);
+    const ReferenceSteps steps(planar_axes, limits, 0.01);
     test::Random random(8);
     for (int i = 0; i < 100; ++i) {
         ReferencePoint point;
