@@ -14,6 +14,7 @@
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/problems/tree_reader.hpp"
 #include "downwash/problems/value_reader.hpp"
+#include "downwash/problems/yaml_document.hpp"
 
 namespace downwash {
 namespace {
