@@ -50,7 +50,7 @@ BUILD.mkdir(exist_ok=True)
 setup(
     version=version(),
     packages=["downwash"],
-    package_dir={"downwash": "python/downwash"},
+    package_dir={"downwash": "apps/python/downwash"},
     package_data={"downwash": ["py.typed", "*.pyi"]},
     ext_modules=[Extension("downwash._core", [])],
     cmdclass={"build_ext": BuildWithCMake},

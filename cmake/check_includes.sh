@@ -15,6 +15,9 @@ dynamics/plant_state simulation/contact_goal simulation/flight_model simulation/
 simulation/pose simulation/robot simulation/robot_uncertainty simulation/tick_model simulation/uncertainty
 simulation/vehicle_state simulation/world simulation/world_numbers simulation/world_parameters'
 
+# The folders of modules: headers are included by the last part of their names.
+modules=$(grep -l 'downwash_module(' ./*/CMakeLists.txt ./*/*/CMakeLists.txt | sed 's|^\./||; s|/CMakeLists.txt||')
+
 mapfile -t files < <(find ./*/ -name 'build*' -prune -o \
     -type f \( -name '*.hpp' -o -name '*.cpp' -o -name '*.h' -o -name '*.inc' -o -name '*.ipp' \) -print |
     sed 's|^\./||; s|//|/|' | grep -v '^build' | LC_ALL=C sort || true)
@@ -23,8 +26,19 @@ if [[ ${#files[@]} -eq 0 ]]; then
     exit 2
 fi
 
-awk -v judge_may="$judge_may" '
+awk -v judge_may="$judge_may" -v modules="$modules" '
     function concept(file) { sub(/\.[a-z]+$/, "", file); return file }
+    # The name of a file as it is included, or its path outside of modules.
+    function included_as(file,    folder) {
+        folder = file
+        while (sub(/\/[^\/]*$/, "", folder)) {
+            if (!(folder in is_module)) continue
+            file = substr(file, length(folder) + 1)
+            sub(/.*\//, "", folder)
+            return folder file
+        }
+        return file
+    }
     # Depth first: a concept that is met again before all that it needs is done closes a circle.
     function visit(node,    list, count, i) {
         state[node] = 1
@@ -58,10 +72,12 @@ awk -v judge_may="$judge_may" '
     BEGIN {
         count = split(judge_may, words, " ")
         for (i = 1; i <= count; ++i) allowed[words[i]] = 1
+        count = split(modules, words, "\n")
+        for (i = 1; i <= count; ++i) is_module[words[i]] = 1
     }
     FNR == 1 {
-        own = concept(FILENAME)
-        folder = FILENAME
+        folder = included_as(FILENAME)
+        own = concept(folder)
         sub(/[^\/]*$/, "", folder)
         is_header = FILENAME !~ /\.cpp$/
         known[own] = 1

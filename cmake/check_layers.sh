@@ -1,42 +1,42 @@
 #!/usr/bin/env bash
-# Checks the layering: a folder includes headers only from the folders below it, and the headers that are
+# Checks the layering: a module includes headers only from the modules below it, and the headers that are
 # installed show neither Eigen, OMPL, FCL nor any other library of ours.
 # Usage: cmake/check_layers.sh [root of the tree]
 set -euo pipefail
 
 cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 
-# Who may use whom, itself aside. `*` knows everything.
+# Who may use whom, itself aside, by the names under which headers are included: the last part of a folder. `*` knows
+# everything.
 layers='
 base:
-scene:       base
-dynamics:    base
-effects:     base
-grids:       base scene
-aeromap:     base scene effects grids
-controllers: base dynamics
-simulation:  base scene dynamics effects grids aeromap controllers
-problems:    base scene dynamics effects grids aeromap controllers simulation
-search:      base scene dynamics effects grids aeromap controllers simulation problems
-rivals:      base scene dynamics effects grids aeromap controllers simulation problems search
-ompl:        base scene dynamics effects grids aeromap controllers simulation problems search rivals
-planner:     base scene dynamics effects grids aeromap controllers simulation problems search rivals
-results:     base scene dynamics effects grids aeromap controllers simulation problems search planner
-judge:       base scene dynamics effects grids aeromap controllers simulation problems results
-fitting:     base effects
-exports:     base scene dynamics effects grids aeromap controllers simulation problems search planner results
-report:      base scene dynamics effects grids aeromap controllers simulation problems search planner results
-studies:     base scene dynamics effects grids aeromap controllers simulation problems search planner results report
-python:      base scene dynamics effects grids aeromap controllers simulation problems search planner results judge fitting exports report studies
-cli:         *
-bench:       *
-docs:        *
-tests:       *
-examples:    *
+scene:                 base
+dynamics:              base
+aeromap/effects:       base
+aeromap/grids:         base scene
+aeromap:               base scene effects grids
+aeromap/fitting:       base effects
+controllers:           base dynamics
+simulation:            base scene dynamics effects grids aeromap controllers
+problems:              base scene dynamics effects grids aeromap controllers simulation
+planner/search:        base scene dynamics effects grids aeromap controllers simulation problems
+planner/ompl_planners: base scene dynamics effects grids aeromap controllers simulation problems search
+planner/ompl:          base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners
+planner:               base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners
+results:               base scene dynamics effects grids aeromap controllers simulation problems search planner
+results/exports:       base scene dynamics effects grids aeromap controllers simulation problems search planner results
+judge:                 base scene dynamics effects grids aeromap controllers simulation problems results
+apps/report:           base scene dynamics effects grids aeromap controllers simulation problems search planner results
+bench/studies:         base scene dynamics effects grids aeromap controllers simulation problems search planner results report
+apps/python:           base scene dynamics effects grids aeromap controllers simulation problems search planner results judge fitting exports report studies
+apps/cli:              *
+bench:                 *
+docs:                  *
+tests:                 *
 '
 
 # These modules are parts of one library and share their private headers.
-one_library='search rivals planner ompl'
+one_library='search ompl_planners planner ompl'
 
 # The judge looks at plans independently. Of what computes flights it may use parameters, types, the formulas of surface effects
 # and the random numbers of worlds, and nothing else.
@@ -47,8 +47,8 @@ simulation/contact_goal.hpp simulation/goal.hpp simulation/noise.hpp simulation/
 # The headers that a module keeps to itself stand behind PRIVATE_HEADERS in its CMakeLists.txt.
 private_headers() {
     local list
-    for list in */CMakeLists.txt; do
-        awk -v module="${list%%/*}" '
+    for list in */CMakeLists.txt */*/CMakeLists.txt; do
+        awk -v module="$(basename "${list%/*}")" '
             { sub(/#.*/, ""); gsub(/[()]/, " & ") }
             {
                 for (i = 1; i <= NF; ++i) {
@@ -86,11 +86,14 @@ awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private
         for (i = 1; i <= n; ++i) together[words[i]] = 1
     }
     FNR == 1 {
-        module = FILENAME
-        sub(/\/.*/, "", module)
-        everything = (module, "*") in may
-        shown = FILENAME ~ /\.hpp$/ && !(FILENAME in kept) && !everything && module != "python" # which installs no header
-        if (!(module in known)) error("the folder \"" module "\" has no place in the layering; give it one in cmake/check_layers.sh")
+        folder = FILENAME
+        while (sub(/\/[^\/]*$/, "", folder) && !(folder in known)) {}
+        if (!(folder in known)) error("the folder \"" folder "\" has no place in the layering; give it one in cmake/check_layers.sh")
+        module = folder
+        sub(/.*\//, "", module)
+        everything = (folder, "*") in may
+        included_as = module substr(FILENAME, length(folder) + 1)
+        shown = FILENAME ~ /\.hpp$/ && !(included_as in kept) && !everything && module != "python" # which installs no header
     }
     /^[ \t]*#[ \t]*include[ \t]*[<"]/ {
         header = $0
@@ -101,8 +104,8 @@ awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private
             sub(/^downwash\//, "", target)
             used = target
             sub(/\/.*/, "", used)
-            if (used != module && !everything && !((module, used) in may))
-                error(module "/ may not use " used "/ (" header ")")
+            if (used != module && !everything && !((folder, used) in may))
+                error(folder "/ may not use " used "/ (" header ")")
             if (module == "judge" && used != "judge" && used != "base" && used != "problems" && !(target in shared))
                 error("the judge shares no " header " with what it judges")
             if (target in kept && used != module && module != "tests" && !(used in together && module in together))

@@ -7,11 +7,11 @@
 #include <system_error>
 #include <utility>
 
+#include "downwash/ompl_planners/control_planners.hpp"
 #include "downwash/planner/braking.hpp"
 #include "downwash/planner/direct_flight.hpp"
 #include "downwash/planner/search_clock.hpp"
 #include "downwash/planner/worlds.hpp"
-#include "downwash/rivals/control_planners.hpp"
 #include "downwash/search/flight_space.hpp"
 #include "downwash/search/flight_tree_planner.hpp"
 #include "downwash/search/quiet_ompl.hpp"

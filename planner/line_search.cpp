@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "downwash/ompl_planners/geometric_planners.hpp"
 #include "downwash/planner/search_clock.hpp"
-#include "downwash/rivals/geometric_planners.hpp"
 #include "downwash/search/planned_flights.hpp"
 
 namespace downwash::planning {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds what a program needs in order to plan (downwash::planner and the modules that it uses) with nothing but the library
-# packages of the group [planner] in cmake/debian-packages.txt, installs it, and builds examples/embed against it.
+# packages of the group [planner] in cmake/debian-packages.txt, installs it, and builds docs/examples/embed against it.
 # Usage: tests/components/minimal_build.sh [--configure]
 #   --configure   only checks that CMake configures without the other packages and says what it leaves out
 # Environment: JOBS, parallel jobs of the build (default 1)
@@ -55,4 +55,4 @@ if others=$(grep -vxFf "$build/allowed" "$build/used"); then
 fi
 echo "built with ${wanted[*]} and what they depend on"
 
-"$root/examples/embed/run_consumer_test.sh" "$build"
+"$root/docs/examples/embed/run_consumer_test.sh" "$build"

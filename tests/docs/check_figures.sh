@@ -45,7 +45,7 @@ wall() { # FACILITY or all, least distance: mean force in %, greatest force in %
             if (force * force > f * f) { f = force }
             if (moment * moment > m * m) { m = moment }
         }
-        END { printf "%.1f %.1f %.3f\n", sum / n, f < 0 ? -f : f, m < 0 ? -m : m }' effects/measurements/walls/wall_effect.csv
+        END { printf "%.1f %.1f %.3f\n", sum / n, f < 0 ? -f : f, m < 0 ? -m : m }' aeromap/effects/measurements/walls/wall_effect.csv
 }
 read -r _ force moment_touching < <(wall all 0)
 read -r _ _ moment < <(wall all 1.5)

@@ -21,7 +21,7 @@ COPY = SOURCES / "build-mutants"
 BUILD = COPY / "build"
 JOBS = os.environ.get("JOBS", "2")
 LONGEST_RUN_S = 600  # a mutant may never come to an end
-MODULES = ("base scene dynamics effects grids aeromap controllers simulation problems search rivals planner results "
+MODULES = ("base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners planner results "
            "fitting exports report bench cli").split()
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Runs every notebook of python/notebooks in its folder, and checks that the files hold no outputs."""
+"""Runs every notebook of apps/python/notebooks in its folder, and checks that the files hold no outputs."""
 
 import os
 import pathlib

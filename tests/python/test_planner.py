@@ -1,4 +1,4 @@
-"""Planning again in flight, from Python. examples/mission compares answers with those of C++, to the last byte."""
+"""Planning again in flight, from Python. docs/examples/mission compares answers with those of C++, to the last byte."""
 
 import dataclasses
 import os

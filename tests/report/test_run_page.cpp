@@ -37,7 +37,7 @@ std::string unpacked(const json& text, std::size_t size) {
     return bytes;
 }
 
-/// The columns of a flight, as report/packed_numbers.hpp says.
+/// The columns of a flight, as apps/report/packed_numbers.hpp says.
 std::vector<std::vector<double>> columns_of(const json& flight) {
     const auto rows = flight["rows"].get<std::size_t>();
     const auto same_as = flight["same_as"].get<std::vector<int>>();

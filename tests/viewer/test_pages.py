@@ -3,7 +3,7 @@
 
 test_pages.py TEMPLATES [--run FOLDER] [--campaign FOLDER] [--validation FOLDER] [--expect DIR] [unittest's arguments]
 
-TEMPLATES is the folder with run.html, campaign.html and validation.html as viewer/build.sh makes them. With --run,
+TEMPLATES is the folder with run.html, campaign.html and validation.html as apps/viewer/build.sh makes them. With --run,
 --campaign and --validation pages that the program wrote are held against the files beside them as well.
 UPDATE_EXPECTED=1 writes the expected pictures anew: look at them before they are committed.
 """

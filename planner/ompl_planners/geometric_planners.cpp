@@ -1,0 +1,222 @@
+#include "downwash/ompl_planners/geometric_planners.hpp"
+
+#include <ompl/base/OptimizationObjective.h>
+#include <ompl/base/ProblemDefinition.h>
+#include <ompl/base/ScopedState.h>
+#include <ompl/base/samplers/InformedStateSampler.h>
+#include <ompl/geometric/PathGeometric.h>
+#include <ompl/geometric/planners/informedtrees/BITstar.h>
+#include <ompl/geometric/planners/rrt/InformedRRTstar.h>
+#include <ompl/geometric/planners/rrt/RRTConnect.h>
+#include <ompl/geometric/planners/rrt/RRTstar.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "downwash/ompl_planners/ompl_parameters.hpp"
+#include "downwash/ompl_planners/seeded.hpp"
+#include "downwash/search/free_air_cost.hpp"
+#include "downwash/search/ompl_space.hpp"
+#include "downwash/search/quiet_ompl.hpp"
+#include "downwash/search/tree_record.hpp"
+#include "downwash/simulation/flight.hpp"
+
+namespace downwash::planning {
+namespace {
+
+namespace ob = ompl::base;
+
+namespace og = ompl::geometric;
+
+struct PreparedPlanner {
+    ob::PlannerPtr planner;
+    std::function<std::size_t()> nodes;
+};
+
+template <class Planner>
+PreparedPlanner prepared(const ob::SpaceInformationPtr& information, const ob::ProblemDefinitionPtr& definition,
+                         std::uint32_t seed) {
+    const auto planner = with_linear_neighbours(std::make_shared<Seeded<Planner>>(information, seed), definition);
+    return {planner, [planner] { return planner->nodes(); }};
+}
+
+PreparedPlanner prepared_planner(const PlannerSettings& settings, const ob::SpaceInformationPtr& information,
+                                 const ob::ProblemDefinitionPtr& definition) {
+    if (settings.algorithm == "rrt-star") {
+        return prepared<og::RRTstar>(information, definition, settings.seed);
+    }
+    if (settings.algorithm == "rrt-connect") {
+        return prepared<og::RRTConnect>(information, definition, settings.seed);
+    }
+    if (settings.algorithm == "informed-rrt-star") {
+        return prepared<og::InformedRRTstar>(information, definition, settings.seed);
+    }
+    if (settings.algorithm == "bit-star") {
+        // All its random numbers come from our samplers: it draws its own only for just-in-time sampling.
+        const auto planner = std::make_shared<og::BITstar>(information);
+        planner->setProblemDefinition(definition);
+        planner->setConsiderApproximateSolutions(true);
+        return {planner, [planner] { return std::size_t{0}; }};
+    }
+    throw std::logic_error("no geometric planner has this name");
+}
+
+/// Samples where a path may be cheaper than the best, by rejection. OMPL's own sampler of this kind draws from the
+/// generator of the state space's default sampler, and where next to nothing is left to gain goes on for minutes.
+class InformedSampler : public ob::InformedSampler {
+ public:
+    explicit InformedSampler(const ob::ProblemDefinitionPtr& definition)
+        : ob::InformedSampler(definition, max_tries), sampler_(space_->allocStateSampler()) {}
+
+    bool sampleUniform(ob::State* state, const ob::Cost& most) override {
+        return sampleUniform(state, opt_->identityCost(), most);
+    }
+    bool sampleUniform(ob::State* state, const ob::Cost& least, const ob::Cost& most) override {
+        for (unsigned int i = 0; i < max_tries; ++i) {
+            sampler_->sampleUniform(state);
+            const ob::Cost cost = heuristicSolnCost(state);
+            if (opt_->isCostBetterThan(cost, most) && !opt_->isCostBetterThan(cost, least)) {
+                return true;
+            }
+        }
+        return false;
+    }
+    bool hasInformedMeasure() const override { return false; }
+    double getInformedMeasure(const ob::Cost&) const override { return space_->getMeasure(); }
+
+ private:
+    static constexpr unsigned int max_tries = 100;
+
+    ob::StateSamplerPtr sampler_;
+};
+
+/// Straight motions, and the hold as part of every motion that arrives at the goal.
+class GeometricObjective : public ob::OptimizationObjective {
+ public:
+    GeometricObjective(const ob::SpaceInformationPtr& information, const FreeAirCost& cost, const SearchSpace& space)
+        : ob::OptimizationObjective(information), free_air_cost_(cost), space_(space) {
+        setCostToGoHeuristic([this](const ob::State* from, const ob::Goal*) {
+            return ob::Cost(free_air_cost_.min_cost_to_goal(read(from, space_)));
+        });
+    }
+
+    bool isSymmetric() const override { return false; }
+    ob::Cost stateCost(const ob::State*) const override { return identityCost(); }
+    ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
+        const Configuration end = read(to, space_);
+        const double hold = space_.is_near_goal(end) ? free_air_cost_.of_hold(end, space_.hold_s(end)) : 0;
+        return ob::Cost(free_air_cost_.of_motion(read(from, space_), end) + hold);
+    }
+    ob::Cost motionCostHeuristic(const ob::State* from, const ob::State* to) const override {
+        return ob::Cost(free_air_cost_.min_cost_of_motion(read(from, space_), read(to, space_)));
+    }
+    ob::InformedSamplerPtr allocInformedStateSampler(const ob::ProblemDefinitionPtr& definition,
+                                                     unsigned int) const override {
+        return std::make_shared<InformedSampler>(definition);
+    }
+
+ private:
+    const FreeAirCost& free_air_cost_;
+    const SearchSpace& space_;
+};
+
+std::vector<Configuration> unwrapped(const og::PathGeometric& path, const SearchSpace& space,
+                                     const Configuration& start) {
+    std::vector<Configuration> waypoints;
+    Configuration last = start;
+    for (std::size_t i = 0; i < path.getStateCount(); ++i) {
+        last = i == 0 ? start : space.seen_from(last, read(path.getState(static_cast<unsigned int>(i)), space));
+        waypoints.push_back(last);
+    }
+    return waypoints;
+}
+
+double cost_of(const std::vector<Configuration>& waypoints, const FreeAirCost& cost, const SearchSpace& space) {
+    double sum = 0;
+    for (std::size_t i = 1; i < waypoints.size(); ++i) {
+        sum += cost.of_motion(waypoints[i - 1], waypoints[i]);
+    }
+    return sum + cost.of_hold(waypoints.back(), space.hold_s(waypoints.back()));
+}
+
+}  // namespace
+
+Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoint& start, const MotionLimits& limits,
+                double tick_s) {
+    Plan plan;
+    plan.tick_s = tick_s;
+    plan.reference.push_back({0, start});
+    for (std::size_t i = 1; i < waypoints.size(); ++i) {
+        const ReferencePoint next = at_rest(waypoints[i]);
+        const ReferenceKnot& last = plan.reference.back();
+        plan.reference.push_back({last.tick + shortest_ticks(last.point, next, limits, tick_s), next});
+    }
+    return plan;
+}
+
+GeometricResult plan_geometrically(const SearchTask& task, Random& random, const GeometricHooks& hooks) {
+    const Problem& problem = task.problem;
+    const SearchSpace& space = task.space;
+    const QuietOmpl quiet;
+    QueryCounts counts;
+    // A motion is checked so densely that the margin covers what happens between two checks.
+    const double step_m = std::min(max_unseen_motion_m(problem.planner.safety_margin_m), 0.1);
+    const auto information = make_space_information(space, random, step_m, counts);
+    const FreeAirCost free_air_cost(task);
+    const Configuration start = problem.start.configuration();
+
+    const auto definition = std::make_shared<ob::ProblemDefinition>(information);
+    ob::ScopedState<> start_state(information);
+    write(start, start_state.get(), space);
+    definition->addStartState(start_state);
+    // BIT* collects goals before it searches, as many as there are.
+    constexpr unsigned int collected_goals = 32;
+    definition->setGoal(problem.planner.algorithm == "bit-star"
+                            ? make_goal_region(information, space, random, collected_goals)
+                            : make_goal_region(information, space, random));
+    definition->setOptimizationObjective(std::make_shared<GeometricObjective>(information, free_air_cost, space));
+
+    const PreparedPlanner prepared = prepared_planner(problem.planner, information, definition);
+    set_parameters(*prepared.planner, problem.planner);
+    prepared.planner->setup();
+    GeometricResult result;
+    std::optional<double> best_cost;
+    const auto improve = [&](double cost) {
+        best_cost = cost;
+        hooks.on_improvement(cost, result.iterations);
+    };
+    definition->setIntermediateSolutionCallback(
+        [&](const ob::Planner*, const std::vector<const ob::State*>&, const ob::Cost cost) { improve(cost.value()); });
+    prepared.planner->solve(ob::PlannerTerminationCondition([&] {
+        const bool is_over = hooks.is_over({result.iterations, prepared.nodes(), counts.rejected()});
+        result.iterations += is_over ? 0 : 1;
+        return is_over;
+    }));
+
+    if (hooks.keep_tree) {
+        result.tree = tree_of(*prepared.planner, [&space](const ob::State* state) { return read(state, space); });
+    }
+    result.counts = counts;
+    result.nearest_approach_m = space.goal_distance_m(start);
+    if (definition->getSolutionPath() != nullptr) {
+        auto* path = definition->getSolutionPath()->as<og::PathGeometric>();
+        const std::vector<Configuration> waypoints = unwrapped(*path, space, start);
+        const double off_m = space.goal_distance_m(waypoints.back());
+        // The planner's status counts an approximate solution as one.
+        const bool is_exact =
+            definition->hasExactSolution() && definition->getGoal()->isSatisfied(path->getStates().back());
+        if (is_exact || waypoints.size() > 1) {
+            result.status = is_exact ? Status::solved : Status::approximate;
+            result.nearest_approach_m = std::min(result.nearest_approach_m, off_m);
+            result.plan = timed_plan(waypoints, reference_at(problem.start), problem.motion, task.model.tick().tick_s);
+            if (is_exact && !best_cost) {
+                improve(cost_of(waypoints, free_air_cost, space));
+            }
+            result.cost = is_exact ? *best_cost : cost_of(waypoints, free_air_cost, space);
+        }
+    }
+    return result;
+}
+
+}  // namespace downwash::planning

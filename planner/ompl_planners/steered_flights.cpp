@@ -1,0 +1,139 @@
+#include "downwash/ompl_planners/steered_flights.hpp"
+
+#include <algorithm>
+#include <span>
+
+namespace downwash::planning {
+namespace {
+
+/// A flight may close from so far away [m], the arm's turn counted as way.
+constexpr double closing_range_m = 0.5;
+
+bool stands_still(const ReferencePoint& point) {
+    return std::ranges::all_of(point.velocity, [](double rate) { return rate == 0; });
+}
+
+}  // namespace
+
+SteeredFlights::SteeredFlights(PlannedFlights& flights)
+    : flights_(flights),
+      task_(flights.task()),
+      steps_(task_.problem.axes(), flights.limits(), task_.model.tick().tick_s) {}
+
+FlightPoint SteeredFlights::start() const {
+    FlightPoint point = start_point(task_);
+    point.rest = steps_.rest_of(point.reference);
+    return point;
+}
+
+FlightPoint SteeredFlights::steered(const FlightPoint& from, const double velocity[max_axes]) const {
+    FlightPoint next = from;
+    next.reference = steps_.after(from.reference, velocity);
+    next.rest = steps_.rest_of(next.reference);
+    next.ticks = from.ticks + steps_.ticks();
+    next.is_valid = false;
+    return next;
+}
+
+FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double velocity[max_axes]) const {
+    FlightPoint next = steered(from, velocity);
+    if (static_cast<double>(next.ticks) + steps_.braking_ticks(next.reference) > static_cast<double>(max_plan_ticks)) {
+        flights_.count_rejection("too_long");
+        return next;
+    }
+    // Where it leaves a limit it could only stop, or turn, outside.
+    if (const Rejection left = task_.space.limit_left_at(next.rest); left != Rejection::none) {
+        flights_.count_rejection(left);
+        return next;
+    }
+    const ReferenceSegment segment(from.reference, next.reference, steps_.ticks(), task_.model.tick().tick_s);
+    FlightJob job{from.vehicle, {{segment}}};
+    flights_.fly(std::span(&job, 1));
+    next.vehicle = job.end();
+    next.is_valid = job.rejection() == Rejection::none;
+    if (next.is_valid) {
+        next.cost = flights_.cost_after(from.cost, from.vehicle, job.legs.front());
+    }
+    return next;
+}
+
+FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double velocity[max_axes]) const {
+    const FlightPoint next = steered(from, velocity);
+    FlightPoint flown = followed(from, next.reference, steps_.ticks());
+    flown.rest = next.rest;
+    return flown;
+}
+
+FlightPoint SteeredFlights::followed(const FlightPoint& from, const ReferencePoint& to, std::int64_t ticks) const {
+    FlightRules rules = flights_.rules();
+    rules.is_over = {};
+    FlightPoint next = from;
+    FlightLeg leg{ReferenceSegment(from.reference, to, ticks, task_.model.tick().tick_s)};
+    leg.flight = fly(task_.model, task_.map, rules, leg.segment, next.vehicle);
+    leg.end = next.vehicle;
+    next.reference = to;
+    next.rest = configuration_of(to);
+    next.cost = flights_.cost_after(from.cost, from.vehicle, leg);
+    next.ticks = from.ticks + ticks;
+    next.is_valid = leg.flight.rejection == Rejection::none;
+    return next;
+}
+
+bool SteeredFlights::is_worth_closing(const FlightPoint& point) const {
+    return task_.space.goal_distance_m(point.rest) <= closing_range_m;
+}
+
+std::optional<Closing> SteeredFlights::closing(const FlightPoint& from) const {
+    // The middle of the goal leaves the whole tolerance to the flight; where an obstacle stands there, its rim does
+    // too.
+    Configuration goal = task_.space.moved_into_goal(from.rest, 0);
+    if (!task_.space.is_valid(goal)) {
+        goal = task_.space.moved_into_goal(from.rest, usable_tolerance_share);
+    }
+    if (const Rejection rejection = task_.space.rejection_at(goal); rejection != Rejection::none) {
+        flights_.count_rejection(rejection);
+        return std::nullopt;
+    }
+    goal = task_.space.seen_from(configuration_of(from.reference), goal);
+    const ReferenceSegment segment = flights_.fastest_segment(from.reference, at_rest(goal));
+    if (segment.ticks() > max_plan_ticks - from.ticks) {
+        flights_.count_rejection("too_long");
+        return std::nullopt;
+    }
+    FlightJob job{from.vehicle, {{segment}, flights_.hold_leg(segment.to())}, flights_.judged_ticks()};
+    flights_.fly(std::span(&job, 1));
+    if (job.rejection() != Rejection::none) {
+        return std::nullopt;
+    }
+    const double arrived = flights_.cost_after(from.cost, from.vehicle, job.legs[0]);
+    const double cost = flights_.cost_after(arrived, job.legs[0].end, job.legs[1]);
+    return Closing{{from.ticks + segment.ticks(), segment.to()}, job.legs[0].end, job.end(), cost};
+}
+
+Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::optional<Closing>& end) const {
+    Plan plan;
+    plan.tick_s = task_.model.tick().tick_s;
+    for (const FlightPoint& point : points) {
+        plan.reference.push_back({point.ticks, point.reference});
+    }
+    if (end) {
+        plan.reference.push_back(end->goal);
+    } else {
+        constexpr double still[max_axes]{};
+        while (!stands_still(plan.reference.back().point)) {
+            const ReferenceKnot& last = plan.reference.back();
+            plan.reference.push_back({last.tick + steps_.ticks(), steps_.after(last.point, still)});
+        }
+    }
+    return plan;
+}
+
+void SteeredFlights::verify(const std::vector<FlightPoint>& points, const Closing& end) const {
+    std::vector<FlightPoint> moments = points;
+    moments.push_back({end.arrival, end.goal.point, {}, 0, end.goal.tick});
+    const std::int64_t hold_ticks = flights_.hold_leg(end.goal.point).segment.ticks();
+    moments.push_back({end.end, end.goal.point, {}, end.cost, end.goal.tick + hold_ticks});
+    flights_.verify(moments);
+}
+
+}  // namespace downwash::planning
