@@ -31,7 +31,7 @@ class CurveMean {
 
     EffectCurve curve_;
     double start_;               ///< before it k is constant
-    double start_factor_;        ///< that constant
+    double start_factor_;        ///< value of that constant
     std::vector<Piece> pieces_;  ///< pieces of the integral from `start_` on, shorter towards it
     double last_integral_ = 0;   ///< up to the end of the table
     double last_factor_ = 1;     ///< there

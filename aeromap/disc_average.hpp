@@ -30,7 +30,7 @@ namespace downwash {
 /// One plane face over or under the whole disc, not level: its gap is that over the hub plus a slope times the distance
 /// from the hub along one direction.
 struct PlaneCover {
-    double gap_m;        ///< at the hub
+    double gap_m;        ///< gap at the hub
     double gap_range_m;  ///< by how much it differs from that at the disc's rim, at most
 
     [[nodiscard]] double farthest_m() const noexcept { return gap_m + gap_range_m; }

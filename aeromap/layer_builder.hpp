@@ -23,7 +23,7 @@ struct CellRows {
 /// A layer before a part of its scene changed.
 struct LayerBefore {
     ColumnRange changed;               ///< columns in which K may differ
-    const CellFlyability* flyability;  ///< of the cells of the layer, row by row
+    const CellFlyability* flyability;  ///< flyability of the cells of the layer, row by row
 };
 
 /// Rows [first, last) of a layer. @throws WorkStopped when it is over before they are built

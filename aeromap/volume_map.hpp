@@ -53,7 +53,7 @@ class DOWNWASH_EXPORT VolumeMap {
 
     /// A halving, or a box.
     struct Node {
-        std::uint32_t axis;   ///< that is halved: 0 x, 1 lateral, 2 z; no_axis: a box
+        std::uint32_t axis;   ///< axis that is halved: 0 x, 1 lateral, 2 z; no_axis: a box
         std::uint32_t index;  ///< index of the lower half's node, behind which the upper half's stands; or that of a
                               ///< box's polynomial
     };

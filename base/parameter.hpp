@@ -35,7 +35,7 @@ enum class ParameterKind {
     samples,     ///< a list of any number of numbers
     choices,     ///< a list of some of `names`
     files,       ///< a list of paths, relative to the file that names them
-    spread,      ///< 0, or how far a number may be from what is believed: {sd: s}, {range: [a, b]}
+    spread,      ///< 0, or how far a number may be from its nominal value: {sd: s}, {range: [a, b]}
 };
 
 /// The allowed values, in the unit of the file (degrees if the key says so). Empty: no limit.

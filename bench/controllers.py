@@ -94,7 +94,7 @@ def main():
     print("# What each control law buys in planning\n")
     print(f"Commit {commit.stdout.strip()}. The shipped problems, each with its uncertainty, MP-ARM-ADA, seeds 1 to {given.seeds}, "
           f"{given.time_limit:g} s and one thread each, two searches at a time. The robot is the shipped one but for its law; *alone* is that law without its observer, with arm gains (kp 34, ki 10) of the same margins. "
-          "A feed-forward reads the map as it is believed, while the worlds of the certificate have other surfaces at other places. "
+          "A feed-forward reads the nominal map, while the worlds of the certificate have other surfaces at other places. "
           "Made by `bench/controllers.py`.\n")
     print("*certified*: searches whose plan got its certificate. *first certified*: median wall time of those. *cost*: median, over problems and "
           "seeds on which both laws are certified, of the flown cost over that of the shipped law. *failures*: of all certificates' worlds together. "

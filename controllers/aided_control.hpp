@@ -66,7 +66,7 @@ class Aid {
     const Map& map_;
     std::optional<Observation<T>> observation_;
     dynamics::Motion<T> explained_;
-    dynamics::RotorWrench<T> wrench_{T(0), T(0)};  ///< that the law believes to act in mid-tick
+    dynamics::RotorWrench<T> wrench_{T(0), T(0)};  ///< wrench that the law expects to act in mid-tick
 };
 
 template <CanBeAided Law>

@@ -58,9 +58,9 @@ struct CascadedPid {
     /// What the law remembers between ticks.
     template <class T>
     struct Memory {
-        T velocity_integral[2];  ///< of the velocity error, x and z [m]
-        T rate_integral;         ///< of the pitch rate error [rad]
-        T joint_integral;        ///< of the arm error [rad s]
+        T velocity_integral[2];  ///< integral of the velocity error, x and z [m]
+        T rate_integral;         ///< integral of the pitch rate error [rad]
+        T joint_integral;        ///< integral of the arm error [rad s]
         T previous_velocity[2];  ///< measured at the previous tick [m/s]
         T previous_pitch_rate;   ///< [rad/s]
     };

@@ -88,7 +88,7 @@ constexpr int max_memory_of() {
     }
 }
 
-/// The same among laws.
+/// The largest max_memory_of() among laws.
 template <class... Laws>
 constexpr int max_memory(const std::variant<Laws...>* /*laws*/) {
     return std::max({max_memory_of<Laws>()...});

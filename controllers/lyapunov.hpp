@@ -14,7 +14,7 @@ namespace downwash::controllers {
 struct LyapunovLaw {
     LyapunovGains roll{8, 8}, pitch{8, 8}, yaw{1, 1};
     LyapunovGains x{1, 1}, y{1, 1}, z{2, 2};
-    double max_tilt_rad = 0.35;     ///< of roll and pitch that the position law asks for, in (0, pi/2)
+    double max_tilt_rad = 0.35;     ///< largest roll and pitch that the position law asks for, in (0, pi/2)
     double min_thrust_ratio = 0.1;  ///< least acting thrust that all laws together ask for, of the weight; > 0
 };
 
@@ -114,7 +114,7 @@ TiltDemand<T> lyapunov_commands(const BasicSpaceModel<P, 0>& model, const SpaceA
     using dynamics::LaneVector;
     const dynamics::LaneRotation<T> attitude = dynamics::rotation_of(state.q + 3);
     const EulerAngles<T> angles = euler_angles(attitude);
-    // Who shall fall faster than g, or flies upside down, has no tilt that would do what the position law asks for.
+    // A vehicle that is to fall faster than g, or flies upside down, cannot tilt as the position law asks.
     const T least_n = T(law.min_thrust_ratio * standard_gravity_m_s2) * T(model.total_mass_kg);
     const T acting_n =
         lane::max(least_n, altitude_thrust(model, law, state.q[2], state.u[2], attitude.third.z, reference.z));

@@ -7,7 +7,7 @@ namespace downwash::controllers {
 
 /// Gains of one coordinate, both > 0 [1/s].
 struct LyapunovGains {
-    double k = 1;       ///< of the error
+    double k = 1;       ///< gain of the error
     double k_rate = 1;  ///< k', of the speed's
 };
 

@@ -21,7 +21,8 @@ struct ModelInversion {
     double position_ki = 0;                     ///< [1/s3]
     double position_integral_limit_m_s2 = 2.0;  ///< greatest ki * integral, per axis
 
-    /// Of the height, which thrust alone controls, without the detour through the pitch. Empty: those of the position.
+    /// Gains of the height, which thrust alone controls, without the detour through the pitch. Empty: those of the
+    /// position.
     std::optional<double> height_kp, height_kd, height_ki;
 
     double attitude_kp = 0;       ///< pitch angle to pitch rate [1/s]
@@ -56,10 +57,10 @@ struct ModelInversion {
     /// What the law remembers between ticks.
     template <class T>
     struct Memory {
-        T position_integral[2];  ///< of the position error, x and z [m s]
-        T pitch_rate_integral;   ///< of the pitch rate error [rad]
-        T arm_integral;          ///< of the arm error [rad s]
-        T pitch_reference_rad;   ///< of the previous tick
+        T position_integral[2];  ///< integral of the position error, x and z [m s]
+        T pitch_rate_integral;   ///< integral of the pitch rate error [rad]
+        T arm_integral;          ///< integral of the arm error [rad s]
+        T pitch_reference_rad;   ///< pitch reference of the previous tick
         T pitch_reference_rate;  ///< filtered derivative [rad/s]
         T rate_reference;        ///< u5_ref of the previous tick [rad/s]
     };

@@ -15,13 +15,13 @@ namespace downwash {
 struct PlanarLyapunov {
     static constexpr const char* name = "lyapunov";
 
-    double horizontal_k = 1.1;       ///< of the error along x
+    double horizontal_k = 1.1;       ///< gain of the error along x
     double horizontal_k_rate = 1.1;  ///< k', of the speed's
     double vertical_k = 3.4;         ///< the same of the height
     double vertical_k_rate = 3.4;
-    double pitch_k = 5.2;  ///< of the pitch against the tilt that x and z ask for
+    double pitch_k = 5.2;  ///< gain of the pitch against the tilt that x and z ask for
     double pitch_k_rate = 5.2;
-    double joint_k = 4.8;  ///< of the arm's angle
+    double joint_k = 4.8;  ///< gain of the arm's angle
     double joint_k_rate = 4.8;
 
     double pitch_rate_filter_s = 0.25;  ///< time constant of the filtered derivative of the tilt that is asked for

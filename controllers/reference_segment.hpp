@@ -67,7 +67,7 @@ class DOWNWASH_EXPORT ReferenceSegment {
     /// How fast the direction of a + g turns at the beginning of a tick, 0 <= tick <= ticks() [rad/s]; infinite where
     /// there is none.
     [[nodiscard]] double pitch_rate_rad_s(std::int64_t tick) const noexcept;
-    /// The same for those who know at_tick(tick) already.
+    /// How fast that direction turns, where at_tick(tick) is known already [rad/s].
     /// @param point at_tick(tick)
     [[nodiscard]] double pitch_rate_rad_s(std::int64_t tick, const ReferencePoint& point) const noexcept;
 

@@ -24,7 +24,7 @@ namespace controllers {
 /// The commands that balance a level vehicle at rest.
 struct RestingCommand {
     dynamics::RotorWrench<double>
-        wrench;  ///< that acts by what the law knows: with a feed-forward not that in free air
+        wrench;  ///< wrench that acts by what the law knows: with a feed-forward not that in free air
     double joint_torque_nm;
     double known_force[4] = {};  ///< what else acts by what the law knows [N, N, N m, N m]: see Unaided::force()
 };
@@ -34,9 +34,9 @@ template <template <class> class Memory>
 struct Rest {
     HoldLimit limit = HoldLimit::none;  ///< why the law cannot; then the rest of this is of no use
     Memory<double> memory{};
-    Memory<bool> feeds_back{};       ///< the numbers of it on which the next ticks depend
-    double error[3] = {};            ///< of x, z and arm: where the reference has to be, from the vehicle
-    double pitch_reference_rad = 0;  ///< that the law asks for in vain, to counter the surfaces' torque
+    Memory<bool> feeds_back{};       ///< whether the next ticks depend on that number of the memory
+    double error[3] = {};            ///< where the reference has to be, from the vehicle: x, z [m], arm [rad]
+    double pitch_reference_rad = 0;  ///< pitch that the law asks for in vain, to counter the surfaces' torque
     double height_gain_1_s2 = 0;     ///< vertical acceleration per metre of error
     double pitch_gain_1_s2 = 0;      ///< pitch acceleration per radian of error
 };

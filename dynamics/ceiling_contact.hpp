@@ -15,11 +15,11 @@ inline constexpr int max_contact_points = 32;
 struct CeilingContact {
     double ceiling_m = 0;  ///< height of the ceiling in the world
     int point_count = 0;
-    LaneVector<double> point_m[max_contact_points] = {};  ///< in the body frame
+    LaneVector<double> point_m[max_contact_points] = {};  ///< points that may touch, in the body frame
     double stiffness_n_m = 1e5;                           ///< k of each point, > 0
     double dissipation_s_m = 1;    ///< c: normal force k d (1 + c d') at the depth d (Hunt and Crossley 1975), >= 0
     double friction = 0.5;         ///< Coulomb's, >= 0
-    double slip_speed_m_s = 0.02;  ///< at which friction has 0.7 of its full force, > 0; below it creeps
+    double slip_speed_m_s = 0.02;  ///< speed at which friction has 0.7 of its full force, > 0; below it creeps
 };
 
 /// Adds points spread evenly over a ring that is level in the body frame: the rim of a rotor guard.

@@ -12,9 +12,9 @@ namespace downwash::dynamics {
 /// What the ceiling does to the multirotor.
 template <class T>
 struct CeilingLoad {
-    SpaceWrench<T> wrench;  ///< in body axes
+    SpaceWrench<T> wrench;  ///< wrench of the contact, in body axes
     T normal_n;             ///< sum of the normal forces, downward
-    T depth_m;              ///< of the deepest point, 0 without contact
+    T depth_m;              ///< depth of the deepest point, 0 without contact
     T highest_m;            ///< height of the highest point in the world
 };
 
@@ -63,8 +63,8 @@ struct UnderCeiling {
 
 /// How the steps of a flight under a ceiling shrink: contact and friction are stiff.
 struct ContactSteps {
-    double share = 1;           ///< of the step that is taken otherwise; 0.5 to see what the steps do to a result
-    double phase_rad = 0.1;     ///< of the fastest vibration against the ceiling per step
+    double share = 1;           ///< share of the step that is taken otherwise; 0.5 to see what the steps do to a result
+    double phase_rad = 0.1;     ///< phase of the fastest vibration against the ceiling per step
     double friction_decay = 1;  ///< by which friction may slow slip per step, as an exponent
 };
 
@@ -72,9 +72,9 @@ struct ContactSteps {
 template <int n>
 struct ContactTick {
     SpaceState<double, n> state;  ///< after it
-    int steps;                    ///< of the integrator
-    double normal_impulse_n_s;    ///< of the ceiling
-    double max_depth_m;           ///< of any point
+    int steps;                    ///< steps of the integrator
+    double normal_impulse_n_s;    ///< impulse of the ceiling on the vehicle
+    double max_depth_m;           ///< largest depth of any point
 };
 
 /// The state after `dt_s` under a ceiling, in as many Runge-Kutta steps as contact needs: one where nothing can touch.

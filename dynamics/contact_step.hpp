@@ -13,7 +13,7 @@ namespace downwash::dynamics {
 struct ContactLoad {
     double force[4] = {};        ///< generalised forces [N, N, N m, N m]
     double normal_n = 0;         ///< sum of the normal forces, >= 0
-    double depth_m = -INFINITY;  ///< of the deepest point; negative: its distance
+    double depth_m = -INFINITY;  ///< depth of the deepest point; negative: its distance
 };
 
 /// The load at coordinates and speeds of a plant.

@@ -31,7 +31,7 @@ struct DisturbedStep {
 /// is not smooth, and one step of 10 ms can be wrong by 2e-5 in a rate. A step is halved until both halves agree with
 /// the whole.
 struct RefinedStep {
-    double tolerance = 1e-7;  ///< of every coordinate and rate, SI units
+    double tolerance = 1e-7;  ///< allowed error of every coordinate and rate, SI units
     int max_halvings = 8;
 
     /// The state after `dt_s`; see flight_step().
@@ -50,10 +50,11 @@ struct RefinedStep {
 
 /// A tick beside a surface, in as many Runge-Kutta steps as contact needs: one where nothing can touch.
 struct ContactStep {
-    const PlanarContact& contact;               ///< its points are those of the model without `center_of_mass`
-    PlanePoint<double> center_of_mass_m{0, 0};  ///< of the plant, from where the points are given, in the body frame
-    ContactTickRecord& record;                  ///< of the last tick
-    double step_share = 1;                      ///< of the step that is taken otherwise; for tests
+    const PlanarContact& contact;  ///< its points are those of the model without `center_of_mass`
+    PlanePoint<double> center_of_mass_m{
+        0, 0};  ///< centre of mass of the plant, from the point to which contact points refer, in the body frame
+    ContactTickRecord& record;  ///< record of the last tick
+    double step_share = 1;      ///< share of the step that is taken otherwise; for tests
 
     /// The state after `dt_s`; see flight_step().
     template <Surroundings<double> Around>

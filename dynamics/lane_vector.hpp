@@ -37,7 +37,7 @@ template <class T>
 LaneVector<T> cross(const LaneVector<T>& a, const LaneVector<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-/// The same vector in every lane.
+/// A vector copied to every lane.
 template <class T, class P>
 LaneVector<T> spread(const LaneVector<P>& a) {
     return {T(a.x), T(a.y), T(a.z)};
@@ -65,7 +65,7 @@ LaneVector<T> operator*(const LaneSymmetric<T>& m, const LaneVector<T>& v) {
     return {m.xx * v.x + m.xy * v.y + m.xz * v.z, m.xy * v.x + m.yy * v.y + m.yz * v.z,
             m.xz * v.x + m.yz * v.y + m.zz * v.z};
 }
-/// The same matrix in every lane.
+/// A matrix copied to every lane.
 template <class T, class P>
 LaneSymmetric<T> spread(const LaneSymmetric<P>& m) {
     return {T(m.xx), T(m.xy), T(m.xz), T(m.yy), T(m.yz), T(m.zz)};

@@ -11,7 +11,7 @@ namespace downwash::dynamics {
 struct PitchBench {
     LaneVector<double> axle_m;     ///< a point of the axle, which is parallel to body y, in the body frame
     LaneVector<double> place_m;    ///< the same point in the world
-    double friction_nm_s_rad = 0;  ///< of the bearings, linear in the rate; >= 0
+    double friction_nm_s_rad = 0;  ///< friction of the bearings, linear in the rate; >= 0
 };
 
 /// The state on the bench.

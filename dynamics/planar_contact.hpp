@@ -23,14 +23,14 @@ struct PlanarContact {
     double stiffness_n_m = 1e5;                            ///< k of each point, > 0
     double dissipation_s_m = 10;   ///< c: normal force k d (1 + c d') at the depth d (Hunt and Crossley 1975), >= 0
     double friction = 0.5;         ///< Coulomb's, >= 0
-    double slip_speed_m_s = 0.02;  ///< at which friction has 0.7 of its full force, > 0; below it creeps
+    double slip_speed_m_s = 0.02;  ///< speed at which friction has 0.7 of its full force, > 0; below it creeps
 };
 
 /// What happened at a surface over one tick.
 struct ContactTickRecord {
-    double normal_impulse_n_s = 0;  ///< of the surface on the vehicle
+    double normal_impulse_n_s = 0;  ///< impulse of the surface on the vehicle
     double depth_m = -INFINITY;     ///< greatest of any point; negative: least distance
-    int steps = 0;                  ///< of the integrator
+    int steps = 0;                  ///< steps of the integrator
 };
 
 }  // namespace downwash::dynamics

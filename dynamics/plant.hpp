@@ -32,12 +32,12 @@ struct ArmParameters {
     double mass_kg = 0;           ///< > 0
     double center_of_mass_m = 0;  ///< distance of its centre of mass from the joint, in [0, length]
     double inertia_kg_m2 = 0;     ///< about its own centre of mass, > 0
-    double radius_m = 0;          ///< of the capsule that encloses it, > 0
+    double radius_m = 0;          ///< radius of the capsule that encloses the arm, > 0
     bool is_limited = false;      ///< without limits the arm turns through 360 degrees
-    double lower_limit_rad = 0;   ///< of the angle relative to the multirotor, when limited
+    double lower_limit_rad = 0;   ///< smallest angle relative to the multirotor, when limited
     double upper_limit_rad = 0;
-    double max_torque_nm = 0;  ///< of the joint, > 0
-    DragParameters drag = {};  ///< of the whole arm in a stream across it; one along it has none
+    double max_torque_nm = 0;  ///< largest torque of the joint, > 0
+    DragParameters drag = {};  ///< drag of the whole arm in a stream across it; one along it has none
 };
 
 /// Rotors that spin in the body's b1-b2 plane. A command is the free-air thrust of one rotor (a PWM level).
@@ -46,7 +46,7 @@ struct RotorParameters {
     std::vector<Vector3> positions_m;     ///< hub positions in the body frame, 2 to max_rotors of them
     double min_thrust_n = 0;              ///< least command, >= 0
     double max_thrust_n = 0;              ///< greatest command, > min
-    double time_constant_s = 0;           ///< of the first-order thrust lag; 0 switches the lag off
+    double time_constant_s = 0;           ///< time constant of the first-order thrust lag; 0 switches the lag off
     double power_coefficient_w_n1p5 = 0;  ///< P = coefficient * thrust^1.5 (docs/model.md 3), > 0
 };
 

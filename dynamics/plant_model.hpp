@@ -15,7 +15,7 @@ struct PlantStructure {
     bool has_fountain;
     bool has_walls;      ///< walls beside the vehicle push it and turn it
     bool has_rotor_lag;  ///< without it thrust follows the command at once
-    bool has_drag;       ///< of the multirotor or of the arm
+    bool has_drag;       ///< whether the multirotor or the arm has drag
     /// What a wall does that a rotor touches, over the free-air thrust: a force away from it, and a moment [m] by which
     /// the side towards it sinks.
     double wall_force, wall_moment_m;
@@ -43,7 +43,7 @@ struct PlantNumbers {
     T rotor_time_constant_s;  ///< > 0 in every lane where the plant has a lag
     T power_coefficient_w_n1p5;
     T body_drag_n_s_m, body_drag_n_s2_m2;  ///< linear and quadratic in the speed through the air
-    T arm_drag_n_s_m, arm_drag_n_s2_m2;    ///< of the whole arm, in the speed across it
+    T arm_drag_n_s_m, arm_drag_n_s2_m2;    ///< drag of the whole arm, in the speed across it
 };
 
 /// The plant as plain numbers, ready for the tick. With T = double one model serves all lanes of a tick; with a pack

@@ -20,11 +20,11 @@ struct QuadrotorParameters {
     double mass_kg = 0;                   ///< m, > 0
     Vector3 inertia_kg_m2 = {};           ///< Ix, Iy, Iz, each > 0
     double arm_m = 0;                     ///< d, from the centre to each rotor's axis (thesis (4.10)), > 0
-    double rotor_height_m = 0;            ///< of the hubs over the centre of mass
+    double rotor_height_m = 0;            ///< height of the hubs over the centre of mass
     double drag_torque_m = 0;             ///< c_D / c_T: yaw torque per newton of thrust (thesis (4.13)), >= 0
     double thrust_coefficient_n_s2 = 0;   ///< c_T, > 0 if there is a rotor inertia
     double rotor_inertia_kg_m2 = 0;       ///< Jr (thesis (4.9)); 0: no gyroscopic term
-    double time_constant_s = 0;           ///< of the first-order thrust lag; 0: none
+    double time_constant_s = 0;           ///< time constant of the first-order thrust lag; 0: none
     double power_coefficient_w_n1p5 = 0;  ///< >= 0
     QuadrotorLayout layout = QuadrotorLayout::cross;
 };

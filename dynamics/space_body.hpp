@@ -27,7 +27,7 @@ struct SpacePlaces {
     LaneVector<T> joint_m[room_for<n>];
     LaneVector<T> axis[room_for<n>];
     LaneVector<T> center_m[room_for<n>];          ///< centres of mass of the links
-    LaneSymmetric<T> inertia_kg_m2[room_for<n>];  ///< of the links about them
+    LaneSymmetric<T> inertia_kg_m2[room_for<n>];  ///< inertia of each link about its centre of mass
 };
 
 /// The places at coordinates q. @param attitude that of q: rotation_of(q + 3)
@@ -57,7 +57,7 @@ template <class T, int n, class P>
     return p;
 }
 
-/// The same.
+/// The places at coordinates, whose rotation it computes.
 template <class T, int n, class P>
 SpacePlaces<T, n> places_at(const BasicSpaceModel<P, n>& model, const T q[space_coordinates<n>]) {
     return places_at(model, q, rotation_of(q + 3));
@@ -82,8 +82,8 @@ LaneVector<T> link_point(const BasicSpaceModel<P, n>& model, const T q[space_coo
 ///   joint_push_i . a + joint_spin_i . w' + sum joint_inertia_ik y_k + bias_joint_i = torque of joint i.
 template <class T, int n>
 struct SpaceEquations {
-    LaneVector<T> first_moment_kg_m;  ///< of all mass
-    LaneSymmetric<T> inertia_kg_m2;   ///< of all mass, about the multirotor's centre of mass
+    LaneVector<T> first_moment_kg_m;  ///< first moment of all mass
+    LaneSymmetric<T> inertia_kg_m2;   ///< inertia of all mass, about the multirotor's centre of mass
     LaneVector<T> joint_push_kg_m[room_for<n>];
     LaneVector<T> joint_spin_kg_m2[room_for<n>];
     T joint_inertia_kg_m2[room_for<n>][room_for<n>];  ///< the upper triangle and the diagonal are set

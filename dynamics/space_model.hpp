@@ -15,7 +15,7 @@ inline constexpr int room_for = n > 0 ? n : 1;
 struct SpaceStructure {
     int rotor_count;
     bool has_rotor_lag;        ///< without it thrust follows the command at once
-    bool has_gyroscopic_term;  ///< of spinning rotors
+    bool has_gyroscopic_term;  ///< whether spinning rotors add a gyroscopic torque
 };
 
 /// A link as plain numbers; see SpaceLink.
@@ -38,7 +38,7 @@ struct SpaceRotorNumbers {
 template <class T, int n>
 struct SpaceNumbers {
     T multirotor_mass_kg, total_mass_kg, inverse_mass_1_kg;
-    dynamics::LaneSymmetric<T> inertia_kg_m2, inverse_inertia_1_kg_m2;  ///< of the multirotor alone
+    dynamics::LaneSymmetric<T> inertia_kg_m2, inverse_inertia_1_kg_m2;  ///< inertia of the multirotor alone
     SpaceLinkNumbers<T> link[room_for<n>];
     SpaceRotorNumbers<T> rotor[max_rotors];
     T rotor_time_constant_s;  ///< > 0 in every lane where the plant has a lag

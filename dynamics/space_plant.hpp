@@ -18,14 +18,14 @@ struct SpaceBody {
 /// A link of the arm. At joint angles of zero the axes of all links are parallel to the multirotor's.
 struct SpaceLink {
     SpaceBody body;
-    Vector3 joint_m = {};           ///< in the frame of what it is mounted on: the multirotor, or the link before
-    Vector3 axis = {0, 1, 0};       ///< of the joint in the same frame; it is normalised
+    Vector3 joint_m = {};  ///< joint in the frame of what the link is mounted on: the multirotor, or the link before
+    Vector3 axis = {0, 1, 0};       ///< axis of the joint in the same frame; it is normalised
     Vector3 center_of_mass_m = {};  ///< from the joint, in the link's own axes
 };
 
 /// One rotor: where it is, which way it pushes and which way it spins.
 struct SpaceRotor {
-    Vector3 position_m = {};   ///< of the hub, from the multirotor's centre of mass
+    Vector3 position_m = {};   ///< position of the hub, from the multirotor's centre of mass
     Vector3 axis = {0, 0, 1};  ///< the direction of its thrust in the body frame; it is normalised
     int spin = 1;              ///< 1 where it turns counterclockwise about its axis, -1 where clockwise
     double drag_torque_m = 0;  ///< torque about its axis, against its spin, per newton of free-air thrust; >= 0
@@ -36,7 +36,7 @@ struct SpacePlant {
     SpaceBody multirotor;            ///< rotors and battery included, arm excluded
     std::vector<SpaceLink> links;    ///< from the multirotor outward
     std::vector<SpaceRotor> rotors;  ///< up to max_rotors
-    double time_constant_s = 0;      ///< of the first-order thrust lag; 0 switches the lag off
+    double time_constant_s = 0;      ///< time constant of the first-order thrust lag; 0 switches the lag off
     /// Thrust = coefficient * speed^2, > 0; only the gyroscopic term needs it.
     double thrust_coefficient_n_s2 = 0;
     double rotor_inertia_kg_m2 = 0;       ///< Jr of each rotor about its axis; 0: no gyroscopic term

@@ -17,9 +17,9 @@ struct Motion {
 
 /// What acts on the bodies apart from gravity and the joint.
 struct Loads {
-    Planar body_force_n;         ///< at the centre of mass of the multirotor
+    Planar body_force_n;         ///< force at the centre of mass of the multirotor
     double body_moment_nm = 0;   ///< about it
-    Planar arm_force_n;          ///< at the centre of mass of the arm
+    Planar arm_force_n;          ///< force at the centre of mass of the arm
     double arm_moment_nm = 0;    ///< about it
     double joint_torque_nm = 0;  ///< on the arm; the multirotor gets the opposite
 };

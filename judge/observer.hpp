@@ -14,7 +14,7 @@ using Four = std::array<double, 4>;
 /// What an observer keeps between ticks.
 struct ObserverMemory {
     Four estimate{};           ///< forces and torques that the model does not explain
-    Four expected_momentum{};  ///< at the next tick, if the estimate is right
+    Four expected_momentum{};  ///< momentum at the next tick, if the estimate is right
 };
 
 /// The momenta of both bodies, as they belong to the coordinates x, z, pitch and arm.

@@ -48,7 +48,7 @@ class DOWNWASH_EXPORT Braking {
     struct Try {
         Plan plan;
         Goal hover;
-        std::size_t failures = 0;  ///< in the worlds in which it was flown
+        std::size_t failures = 0;  ///< failures in the worlds in which it was flown
     };
     [[nodiscard]] std::vector<Try> all_tries(const ReferencePoint& from) const;
     void leave_out_near_rests(std::vector<Try>& tries, double margin_m) const;
@@ -66,7 +66,7 @@ class DOWNWASH_EXPORT Braking {
     std::vector<FlownWorld> worlds_;  ///< the nominal one first
     int threads_;
     std::shared_ptr<const AeroMap> map_;
-    std::unique_ptr<FlightPool> pool_;  ///< with the map; nothing before the first flight
+    std::unique_ptr<FlightPool> pool_;  ///< flights with the map; nothing before the first flight
 };
 
 /// Where vehicles can stop as they follow plans of a problem from its start, in every world from where they are in that

@@ -44,7 +44,7 @@ class FlightSearch {
           goals_(before.goals),
           clock_(part.planner, options),
           worlds_(checks.worlds),
-          stop_finder_(before.goals.size() == whole.stops.size() ? checks.stop_finder : nullptr),
+          stop_finder_(before.goals.size() == whole.goals_before.size() ? checks.stop_finder : nullptr),
           search_worlds_(worlds_ != nullptr ? worlds_->for_search(before) : SearchWorlds{}),
           task_(part, *model.flight, model.map.get(), before.vehicle, worlds_ != nullptr ? &search_worlds_ : nullptr,
                 before.ticks()),
@@ -182,7 +182,7 @@ bool FlightSearch::can_stop(const Plan& plan) {
     } catch (const WorkStopped&) {  // too late to know, and to find another one
         return !has_plan();
     }
-    return !result_.found.stops || !is_clearly_worse(*stops_, *result_.found.stops);
+    return !result_.found.safe_stops || !is_clearly_worse(*stops_, *result_.found.safe_stops);
 }
 
 /// Whether a plan fails rarely enough in worlds that the search has not seen. One that ends before the last goal needs
@@ -237,7 +237,7 @@ void FlightSearch::accept(const Plan& plan, double cost, std::uint64_t iteration
     best.plan = plan;
     best.cost = cost;
     best.certificate = certificate_;
-    best.stops = stops_;
+    best.safe_stops = stops_;
     if (certificate_ && !clock_.record.first_certified_wall_s) {
         clock_.record.first_certified_wall_s = known_at_s_;
     }

@@ -5,7 +5,7 @@
 namespace downwash::planning {
 
 /// Searches for the way to one goal with the algorithm that the problem names. Its settings hold limits and seed.
-/// @param part a problem without stops, whose start is at the end of the course before
+/// @param part a problem with a single goal, whose start is at the end of the course before
 /// @param whole the problem that it is a part of, or itself
 /// @return cost and plan from the part's start on; the execution, if there is one, of course and plan together
 [[nodiscard]] SearchResult search_goal(const Problem& part, const Problem& whole, const PlannerModel& model,

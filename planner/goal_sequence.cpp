@@ -13,7 +13,7 @@ namespace {
 /// The search for the way to a goal from the end of a course.
 Problem part_of(const Problem& problem, const Goal& goal, const Course& before) {
     Problem part = problem;
-    part.stops.clear();
+    part.goals_before.clear();
     part.goal = goal;
     if (!before.plan.reference.empty()) {
         part.start = Start::resting_at(before.plan.last());
@@ -183,7 +183,7 @@ bool GoalSequence::goes_on_after(SearchResult part) {
     if (is_last) {
         way.status = Status::solved;
         way.execution = std::move(found.execution);
-        way.stops = std::move(found.stops);
+        way.safe_stops = std::move(found.safe_stops);
         note_improvements(course, part.record, begun_at_s, iterations_before);
         return true;
     }
@@ -251,9 +251,10 @@ double GoalSequence::share(std::size_t part) const {
 /// Whether a way is better than the best so far: it can be left for a hover for clearly more of its time or, else,
 /// costs less.
 bool GoalSequence::is_better(const Found& way) const {
-    if (way.stops && best_.stops) {
-        if (is_clearly_worse(*way.stops, *best_.stops) || is_clearly_worse(*best_.stops, *way.stops)) {
-            return is_clearly_worse(*best_.stops, *way.stops);
+    if (way.safe_stops && best_.safe_stops) {
+        if (is_clearly_worse(*way.safe_stops, *best_.safe_stops) ||
+            is_clearly_worse(*best_.safe_stops, *way.safe_stops)) {
+            return is_clearly_worse(*best_.safe_stops, *way.safe_stops);
         }
     }
     return cost_when_flown(way) < cost_when_flown(best_);

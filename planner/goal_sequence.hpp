@@ -36,8 +36,8 @@ class DOWNWASH_EXPORT GoalSequence {
 
     /// A search for the way to the next goal.
     struct Part {
-        Problem problem;       ///< without stops, with the limits and the seed of this search
-        const Course* before;  ///< at whose end it begins, until add()
+        Problem problem;       ///< problem with a single goal, the limits and the seed of this search
+        const Course* before;  ///< course at whose end the search begins, until add()
         SolveOptions options;  ///< report its progress as that of the whole
     };
     /// The next search; empty when all is done.
@@ -78,7 +78,8 @@ class DOWNWASH_EXPORT GoalSequence {
     const SolveOptions& options_;
     double min_round_;  ///< see the constructor
     std::vector<Goal> goals_;
-    std::vector<std::uint32_t> searches_;  ///< for the way to each goal so far; each draws other samples
+    std::vector<std::uint32_t>
+        searches_;  ///< number of searches for the way to each goal so far; each draws other samples
     std::vector<std::uint32_t> given_up_;  ///< how many of these took too long
     SearchBudget whole_;
     SearchBudget left_;
@@ -87,7 +88,7 @@ class DOWNWASH_EXPORT GoalSequence {
     bool is_last_ = false;      ///< there will be no other round
     bool is_done_ = false;
     SearchRecord round_work_;  ///< what the round that is going on may take
-    Round round_;              ///< that is going on
+    Round round_;              ///< round that is going on
     Found best_;               ///< the best way so far or, without one, the farthest
     SearchRecord record_;
     std::uint64_t attempts_;          ///< plans that asked for a certificate

@@ -29,9 +29,9 @@ SearchResult search_alone(const Problem& problem, const PlannerModel& model, con
     start.attempts = attempts;
     SearchResult result = search_goal(problem, problem, model, start, checks, options);
     Found& found = result.found;
-    if (checks.stop_finder != nullptr && found.status == Status::solved && !found.stops) {  // the time was up
+    if (checks.stop_finder != nullptr && found.status == Status::solved && !found.safe_stops) {  // the time was up
         try {
-            found.stops = checks.stop_finder->along(*found.plan, end_of_last_flight(options.stop));
+            found.safe_stops = checks.stop_finder->along(*found.plan, end_of_last_flight(options.stop));
         } catch (const WorkStopped&) {  // then nobody knows
         }
     }
@@ -53,8 +53,8 @@ SearchResult search_in_order(const Problem& problem, const PlannerModel& model, 
                             problem.uncertainty ? search_worlds(problem) : std::vector<FlownWorld>(), options.threads);
     }
     const PlanChecks checks{worlds ? &*worlds : nullptr, stop_finder ? &*stop_finder : nullptr};
-    return problem.stops.empty() ? search_alone(problem, model, checks, options, attempts)
-                                 : search_in_turn(problem, model, checks, options, min_round, attempts);
+    return problem.goals_before.empty() ? search_alone(problem, model, checks, options, attempts)
+                                        : search_in_turn(problem, model, checks, options, min_round, attempts);
 }
 
 StopCondition end_of_last_flight(const std::stop_token& stop) {

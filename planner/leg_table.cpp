@@ -46,7 +46,7 @@ Problem problem_to(const Problem& problem, const Goal& goal) {
     Problem part = problem;
     part.targets.clear();
     part.return_to.reset();
-    part.stops.clear();
+    part.goals_before.clear();
     part.goal = goal;
     return part;
 }

@@ -59,11 +59,11 @@ class DOWNWASH_EXPORT LegTable {
     struct Place {
         Visit visit;
         Goal goal;
-        Configuration at;             ///< in the goal region, until a leg ends there
-        std::optional<Course> hover;  ///< at the end of the first leg to it
+        Configuration at;             ///< place in the goal region, until a leg ends there
+        std::optional<Course> hover;  ///< hover at the end of the first leg to it
     };
     struct LegState {
-        bool is_known = false;  ///< in this pass
+        bool is_known = false;  ///< whether the leg is known in this pass
         int failures = 0;
         LegCost flown = {};  ///< the cheapest flight of all passes; infinite without one
     };
@@ -89,7 +89,7 @@ class DOWNWASH_EXPORT LegTable {
     std::vector<LegState> legs_;
     LegCosts estimates_;
     std::uint64_t legs_flown_ = 0;
-    std::uint32_t pass_ = 0;  ///< in each one the searches draw other samples
+    std::uint32_t pass_ = 0;  ///< number of the pass; in each one the searches draw other samples
 };
 
 }  // namespace downwash::planning

@@ -6,7 +6,7 @@
 
 namespace downwash::planning {
 
-/// MP-ARM: searches a path of straight lines to the goal of a problem without stops.
+/// MP-ARM: searches a path of straight lines to the goal of a problem with a single goal.
 [[nodiscard]] SearchResult search_lines(const Problem& problem, const FlightModel& model, const SolveOptions& options);
 
 }  // namespace downwash::planning

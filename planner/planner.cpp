@@ -177,7 +177,7 @@ void Planner::apply(const SceneChange& change) {
     }
     next.obstacles.insert(next.obstacles.end(), change.put.begin(), change.put.end());
     if (change.goal) {
-        next.stops.clear();
+        next.goals_before.clear();
         next.targets.clear();
         next.return_to.reset();
         next.energy_budget_j.reset();
@@ -199,14 +199,15 @@ void Planner::apply(const SceneChange& change) {
 
 /// Goals whose hovers are over by a tick of the last plan need no further visit.
 void Planner::drop_visited_goals(std::int64_t tick) {
-    if (!plan_ || problem_.stops.empty()) {
+    if (!plan_ || problem_.goals_before.empty()) {
         return;
     }
     const std::vector<std::size_t> ends = hover_ends(*model_, plan_->reference, goals_of(problem_));
     const auto visited =
         std::count_if(ends.begin(), ends.end(), [&](std::size_t knot) { return plan_->reference[knot].tick <= tick; });
-    problem_.stops.erase(problem_.stops.begin(),
-                         problem_.stops.begin() + std::min<std::ptrdiff_t>(visited, std::ssize(problem_.stops)));
+    problem_.goals_before.erase(
+        problem_.goals_before.begin(),
+        problem_.goals_before.begin() + std::min<std::ptrdiff_t>(visited, std::ssize(problem_.goals_before)));
 }
 
 bool Planner::plans_in_worlds() const {

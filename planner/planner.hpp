@@ -128,7 +128,7 @@ class DOWNWASH_EXPORT Planner {
     std::shared_ptr<const AeroMap> map_;  ///< map of the scene as it is, once it was needed
     std::vector<BoundingBox> unmapped_;   ///< changes that the map does not know yet
     std::optional<Plan> plan_;
-    std::vector<Configuration> places_;  ///< that carried the tree of the last search
+    std::vector<Configuration> places_;  ///< places that carried the tree of the last search
     std::uint32_t searches_ = 0;         ///< searches of replan() so far
     Solution solution_;
     mutable std::mutex mutex_;  ///< guards latest_

@@ -16,7 +16,7 @@ namespace {
 /// Calls `change(goal)` with the goal, every stop and every target. The place to return to stays.
 template <class Change>
 void change_goals(Problem& problem, const Change& change) {
-    std::ranges::for_each(problem.stops, change);
+    std::ranges::for_each(problem.goals_before, change);
     std::ranges::for_each(problem.targets, change);
     change(problem.goal);
 }

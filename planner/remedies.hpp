@@ -13,7 +13,7 @@ namespace downwash {
 
 /// A change of a problem for which a search found no certified plan, and what came of trying it.
 struct Remedy {
-    std::string change;  ///< in words, for example "the goal 0.2 m lower"
+    std::string change;  ///< change in words, for example "the goal 0.2 m lower"
     std::string error;   ///< why the changed problem cannot be planned; empty if it can
     bool helps = false;  ///< a plan got its certificate
     std::optional<Certificate>

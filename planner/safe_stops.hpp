@@ -16,7 +16,7 @@ struct SafeStops {
             rest;               ///< where the reference is after braking; empty: no stop is known to be safe
         double duration_s = 0;  ///< until it is at rest
     };
-    std::vector<Moment> moments;  ///< at each knot, and at most half a second apart
+    std::vector<Moment> moments;  ///< moments at each knot, and at most half a second apart
     double share_without = 0;     ///< share of the plan's time, without the last hover, that has no safe stop
 };
 

@@ -20,7 +20,7 @@ std::shared_ptr<const AeroMap> map_for(const Problem& problem, const FlightModel
     if (problem.planner.variant != Variant::mp_arm_ada || !problem.aero.enabled) {
         return nullptr;
     }
-    if (options.map && !model.is_mine(*options.map, problem.bounds)) {
+    if (options.map && !model.matches(*options.map, problem.bounds)) {
         throw std::invalid_argument(
             "SolveOptions::map is of another scene, robot, model or bounds: expected a map of the same problem, or "
             "none");

@@ -38,7 +38,7 @@ struct FoundPlan {
 
 /// How a program takes part in a search. Its functions must not throw.
 struct SolveOptions {
-    int threads = 1;       ///< for flights and the aero map, below 1 as 1; the result does not depend on it
+    int threads = 1;       ///< threads for flights and the aero map, below 1 as 1; the result does not depend on it
     std::stop_token stop;  ///< ends the search early, with the best plan so far
     std::function<void(const Progress&)> on_progress;  ///< called by solve()'s thread, ten times a second
     /// Called by solve()'s thread with each plan that counts and is better than the last: of MP-ARM once, in the end.
@@ -48,7 +48,7 @@ struct SolveOptions {
     std::function<void(double)> on_map_progress;
     /// What the search knows before it begins, as from a search for the same goal from another start or in another
     /// scene: a plan, whose ticks begin with the search, is flown from the start first and refined if nothing rejects
-    /// it; places are tried before random ones, in their order. Of a problem without stops; rrt-star only.
+    /// it; places are tried before random ones, in their order. Of a problem with a single goal; rrt-star only.
     std::optional<Plan> known_plan;
     std::vector<Configuration> known_places;
     bool stop_at_first_solution = false;

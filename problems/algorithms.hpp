@@ -24,8 +24,8 @@ struct AlgorithmInfo {
     std::string_view name;
     std::string_view kind;  ///< "geometric, anytime", ...
     std::string_view description;
-    bool plans_lines = false;    ///< for mp-arm
-    bool plans_flights = false;  ///< for mp-arm-da and mp-arm-ada
+    bool plans_lines = false;    ///< whether it plans for mp-arm
+    bool plans_flights = false;  ///< whether it plans for mp-arm-da and mp-arm-ada
     std::span<const AlgorithmParameter> line_parameters = {};
     std::span<const AlgorithmParameter> flight_parameters = {};
 

@@ -26,11 +26,11 @@ struct CampaignSeeds {
 struct CampaignExpectation {
     Variant variant = Variant::mp_arm_ada;
     std::optional<std::string> algorithm;           ///< empty: all of the campaign
-    std::optional<double> solved_ratio;             ///< at least, of the attempted seeds
-    std::optional<std::uint64_t> failed_flights;    ///< at most
-    std::optional<double> first_solution_median_s;  ///< at most
-    std::optional<double> first_solution_95_s;      ///< at most, of the 95 % quantile
-    std::optional<double> verified_median_s;        ///< at most, to the first plan that may be reported
+    std::optional<double> solved_ratio;             ///< least share of the attempted seeds
+    std::optional<std::uint64_t> failed_flights;    ///< greatest allowed
+    std::optional<double> first_solution_median_s;  ///< greatest allowed
+    std::optional<double> first_solution_95_s;      ///< greatest allowed 95 % quantile
+    std::optional<double> verified_median_s;        ///< greatest allowed, to the first plan that may be reported
     /// The median cost after `cost_after_s` is at most `cost_to_best` times the least that any run of the campaign has
     /// flown there, and below the median that the algorithm `cheaper_than` has after `cheaper_than_after_s`.
     std::optional<double> cost_after_s;
@@ -38,9 +38,9 @@ struct CampaignExpectation {
     std::optional<std::string> cheaper_than;
     std::optional<double> cheaper_than_after_s;
     // On problems with an uncertainty:
-    std::optional<double> max_failure_share;         ///< at most, of the flights in the evaluation worlds
-    std::optional<double> certified_ratio;           ///< at least, of the attempted seeds
-    std::optional<double> first_certified_median_s;  ///< at most
+    std::optional<double> max_failure_share;         ///< greatest share of the flights in the evaluation worlds
+    std::optional<double> certified_ratio;           ///< least share of the attempted seeds
+    std::optional<double> first_certified_median_s;  ///< greatest allowed
 };
 
 /// Problems x objectives x variants x algorithms x parameters x margins x seeds, each of which is one run.

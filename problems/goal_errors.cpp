@@ -49,18 +49,18 @@ void for_each_goal(const Problem& p, const Visit& visit) {
     if (!p.targets.empty()) {
         return;
     }
-    for (std::size_t i = 0; i < p.stops.size(); ++i) {
-        visit(p.stops[i], name("goal", i));
+    for (std::size_t i = 0; i < p.goals_before.size(); ++i) {
+        visit(p.goals_before[i], name("goal", i));
     }
     if (asks_for_contact(p.goal)) {  // its alternatives stand in no file
         return;
     }
-    if (!p.stops.empty()) {
-        visit(p.goal, name("goal", p.stops.size()));
+    if (!p.goals_before.empty()) {
+        visit(p.goal, name("goal", p.goals_before.size()));
     } else if (p.goal.any_of.empty()) {
         visit(p.goal, "goal");
     }
-    for (std::size_t i = 0; i < p.goal.any_of.size() && p.stops.empty(); ++i) {
+    for (std::size_t i = 0; i < p.goal.any_of.size() && p.goals_before.empty(); ++i) {
         visit(p.goal.any_of[i], name("goal.any_of", i));
     }
 }
@@ -85,7 +85,7 @@ std::vector<KeyError> too_many_goals(const Problem& p) {
     for (std::size_t i = 0; i < p.targets.size(); ++i) {
         check("goal.in_any_order[" + std::to_string(i) + "].any_of", p.targets[i].any_of.size(), max_goals);
     }
-    check("goal", p.stops.size() + 1, max_goals);
+    check("goal", p.goals_before.size() + 1, max_goals);
     check("goal.any_of", p.goal.any_of.size(), max_goals);
     return errors;
 }
@@ -99,7 +99,7 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
     if (p.return_to && !std::holds_alternative<ConfigurationGoal>(p.return_to->kind)) {
         return {{std::string(key_of_return), "is no configuration: expected one"}};
     }
-    if (asks_for_contact(p.goal) && !(p.stops.empty() && p.targets.empty())) {
+    if (asks_for_contact(p.goal) && !(p.goals_before.empty() && p.targets.empty())) {
         errors.push_back({"goal", only});
     }
     append(errors, in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
@@ -124,7 +124,7 @@ std::vector<KeyError> holds_beyond_longest_plan(const Problem& p) {
                                                                  std::to_string(max_plan_ticks) + " control ticks"}};
     });
     double sum_s = 0;
-    for (const Goal& stop : p.stops) {
+    for (const Goal& stop : p.goals_before) {
         sum_s += stop.hold_s;
     }
     if (!p.targets.empty()) {

@@ -59,9 +59,9 @@ Parameter<Problem> goal_group() {
         parameters::group<Problem>("goal", "where the flight must end and stay; a list: where it must stay in turn")
             .is_required();
     goal.can_be_list = true;
-    goal.count = [](const Problem& p, std::size_t) { return p.stops.size() + 1; };
+    goal.count = [](const Problem& p, std::size_t) { return p.goals_before.size() + 1; };
     goal.resize = [](Problem& p, std::size_t, std::size_t count) {
-        p.stops.assign(count - 1, Goal{});
+        p.goals_before.assign(count - 1, Goal{});
         p.goal = Goal{};
         p.targets.clear();
         p.return_to.reset();
@@ -147,7 +147,7 @@ void add_goal_rows(Rows& rows) {
     }));
 
     const auto in_turn = [](auto& p, std::size_t i) -> auto& {
-        return i < p.stops.size() ? p.stops[i] : p.goal;
+        return i < p.goals_before.size() ? p.goals_before[i] : p.goal;
     };
     add_kinds(rows, "goal[]", in_turn);
     rows.push_back(hold("goal[]", in_turn));

@@ -8,7 +8,7 @@ namespace downwash::problems {
 
 /// What to write instead of a key that does not exist.
 struct KeyRemedy {
-    std::string text;                     ///< for people
+    std::string text;                     ///< text for people
     std::vector<std::string_view> meant;  ///< the valid keys that it most likely stands for; may be empty
 };
 

@@ -38,7 +38,7 @@ struct PlacedProblem {
 
 /// A new value of a key.
 struct KeyChange {
-    std::string key;   ///< with the indices of lists: "planner.seed" or "environment.obstacles[0].box.size_m"
+    std::string key;   ///< key with the indices of lists: "planner.seed" or "environment.obstacles[0].box.size_m"
     std::string yaml;  ///< the value as a problem file would have it, in the units of the file; JSON will do
 };
 

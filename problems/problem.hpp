@@ -43,7 +43,8 @@ struct Start {
     double x_m = 0, z_m = 0, arm_rad = 0;
     double pitch_rad = 0;
     double vx_m_s = 0, vz_m_s = 0, pitch_rate_rad_s = 0, arm_rate_rad_s = 0;
-    std::optional<ReferencePoint> reference;  ///< with which the plan begins; empty: where the vehicle is, as it moves
+    std::optional<ReferencePoint>
+        reference;  ///< reference with which the plan begins; empty: where the vehicle is, as it moves
     /// Free-air thrust that the rotors' lag has reached [N], of each rotor; empty: they carry the weight.
     std::vector<double> rotor_thrust_n;
     /// Numbers of the control law's memory, in the order of its Memory; empty: that of a vehicle that has hovered long.
@@ -104,10 +105,11 @@ struct Problem {
     AeroSettings aero;
     std::optional<Uncertainty> uncertainty;  ///< Nothing: everything is nominal.
     Start start;
-    std::vector<Goal> stops;  ///< Goals to be reached and held before `goal`, in this order, without alternatives.
+    std::vector<Goal>
+        goals_before;  ///< Goals to be reached and held before `goal`, in this order, without alternatives.
     Goal goal;
-    std::vector<Goal> targets;      ///< Goals in an order that the planner chooses; any replace `stops` and `goal`.
-    std::optional<Goal> return_to;  ///< A configuration to be reached and held after the targets.
+    std::vector<Goal> targets;  ///< Goals in an order that the planner chooses; any replace `goals_before` and `goal`.
+    std::optional<Goal> return_to;          ///< A configuration to be reached and held after the targets.
     std::optional<double> energy_budget_j;  ///< No flight may take more, > 0; targets beyond it are left out.
     MotionLimits motion;
     PlannerSettings planner;
@@ -122,8 +124,8 @@ inline constexpr std::size_t max_goals = 64;
 /// More targets than these are not planned for in any order.
 inline constexpr std::size_t max_targets = 20;
 
-/// All goals in the order in which they are to be visited: the stops, then the goal. Targets in any order come as they
-/// stand in the file, then the place to return to; see in_order().
+/// All goals in the order in which they are to be visited: `goals_before`, then `goal`. Targets in any order come as
+/// they stand in the file, then the place to return to; see in_order().
 [[nodiscard]] DOWNWASH_EXPORT std::vector<Goal> goals_of(const Problem& problem);
 
 /// Every reason why a problem cannot be planned: numbers out of range, a robot that cannot fly, a start in collision

@@ -382,7 +382,7 @@ std::vector<KeyError> further_problem_errors(const Problem& problem, WrongKeys w
 }
 
 std::vector<Goal> goals_of(const Problem& problem) {
-    std::vector<Goal> goals = problem.targets.empty() ? problem.stops : problem.targets;
+    std::vector<Goal> goals = problem.targets.empty() ? problem.goals_before : problem.targets;
     if (problem.targets.empty()) {
         goals.push_back(problem.goal);
     }

@@ -21,23 +21,23 @@ Problem in_order(Problem problem, const std::optional<VisitOrder>& order) {
         return problem;
     }
     const std::vector<Goal> targets = std::exchange(problem.targets, {});
-    problem.stops.clear();
+    problem.goals_before.clear();
     for (const Visit& visit : order->visits) {
         const Goal& target = targets[visit.target];
-        problem.stops.push_back(visit.alternative ? target.any_of[*visit.alternative] : target);
+        problem.goals_before.push_back(visit.alternative ? target.any_of[*visit.alternative] : target);
     }
     if (problem.return_to) {
-        problem.stops.push_back(*std::exchange(problem.return_to, std::nullopt));
+        problem.goals_before.push_back(*std::exchange(problem.return_to, std::nullopt));
     }
-    problem.goal = problem.stops.back();
-    problem.stops.pop_back();
+    problem.goal = problem.goals_before.back();
+    problem.goals_before.pop_back();
     return problem;
 }
 
 std::vector<std::string> goal_names(const Problem& problem, const std::optional<VisitOrder>& order) {
     std::vector<std::string> names;
     if (problem.targets.empty()) {
-        for (std::size_t i = 0; i <= problem.stops.size() && !problem.stops.empty(); ++i) {
+        for (std::size_t i = 0; i <= problem.goals_before.size() && !problem.goals_before.empty(); ++i) {
             names.push_back("goal " + std::to_string(i + 1));
         }
         return names.empty() ? std::vector<std::string>{"goal"} : names;

@@ -15,7 +15,7 @@ namespace downwash {
 
 /// A stay at one of the targets of a problem.
 struct Visit {
-    std::size_t target = 0;                  ///< in Problem::targets, from 0
+    std::size_t target = 0;                  ///< number in Problem::targets, from 0
     std::optional<std::size_t> alternative;  ///< In its `any_of`, from 0; empty: any of them, or it has none.
 
     friend bool operator==(const Visit&, const Visit&) = default;
@@ -23,7 +23,7 @@ struct Visit {
 
 /// Why a flight leaves out a target.
 enum class LeftOutReason : std::uint8_t {
-    energy_budget,  ///< with it the flight would take more energy than it may
+    energy_budget,  ///< the flight would take more energy with it than it may
     no_flight,      ///< no flight to it was found
 };
 
@@ -34,7 +34,7 @@ inline constexpr std::array all_left_out_reasons{LeftOutReason::energy_budget, L
 
 /// A target that is not visited.
 struct LeftOutTarget {
-    std::size_t target = 0;  ///< in Problem::targets, from 0
+    std::size_t target = 0;  ///< number in Problem::targets, from 0
     LeftOutReason reason = LeftOutReason::no_flight;
     /// For `energy_budget`: what the flight would take with this target beside those that are visited, by the legs that
     /// were flown and lower bounds of the others [J].

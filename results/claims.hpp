@@ -30,7 +30,7 @@ struct Claims {
     CostFunction objective;
     std::uint64_t seed = 1;
     Plan plan;                        ///< the reference
-    std::optional<VisitOrder> order;  ///< in which it visits the targets of the problem, if that has some
+    std::optional<VisitOrder> order;  ///< order in which it visits the targets of the problem, if that has some
     std::vector<Configuration> waypoints;
     std::optional<FlightClaims> flight;
     std::optional<double> certified_share;  ///< the failure probability that a given certificate promises at most

@@ -33,7 +33,7 @@ struct Node {
 /// Reads values out of a document and collects what is wrong with them.
 class JsonReader {
  public:
-    /// Of a coordinate, an angle and their derivatives.
+    /// The greatest size of a coordinate, an angle and their derivatives.
     static constexpr double greatest_number = 1e6;
     /// Further ones are not noted.
     static constexpr std::size_t max_errors = 20;
@@ -111,7 +111,7 @@ class JsonReader {
         }
     }
 
-    /// The same for a member of a group, left as it is when that is missing.
+    /// Reads a member of a group; `value` is left as it is when that is missing.
     template <class Integer>
     void read_count(const Node& group, const char* name, Integer& value) {
         if (const auto node = member(group, name)) {

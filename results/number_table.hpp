@@ -13,7 +13,7 @@ namespace downwash {
 struct NumberTable {
     std::vector<std::string> names;
     std::vector<std::vector<double>> columns;
-    std::vector<std::size_t> lines;  ///< of the file, counted from 1: where each row stands
+    std::vector<std::size_t> lines;  ///< line of the file, counted from 1, where each row stands
 
     [[nodiscard]] std::size_t rows() const noexcept { return columns.empty() ? 0 : columns.front().size(); }
     /// Adds a row below the others. @pre as many numbers as columns

@@ -20,10 +20,10 @@ struct RunRecord {
     Problem problem;                  ///< effective.yaml
     std::string problem_text;         ///< the same as text
     std::string solution_text;        ///< solution.json: well-formed, of the schema that this version writes
-    std::string status;               ///< of the solution: "solved", "approximate" or "none"
-    std::string outcome;              ///< of its flight: "ok", "collision"...; empty without one
-    std::optional<Plan> plan;         ///< of the solution; empty without one
-    std::optional<VisitOrder> order;  ///< in which the plan visits targets; empty without a plan or targets
+    std::string status;               ///< status of the solution: "solved", "approximate" or "none"
+    std::string outcome;              ///< outcome of its flight: "ok", "collision"...; empty without one
+    std::optional<Plan> plan;         ///< plan of the solution; empty without one
+    std::optional<VisitOrder> order;  ///< order in which the plan visits targets; empty without a plan or targets
     NumberTable flight;               ///< trajectory.csv; no rows when nothing was flown
     NumberTable tree;                 ///< tree.csv: x_m, z_m, arm_rad, parent; no rows without it
 };

@@ -24,7 +24,7 @@ inline constexpr std::size_t max_solution_bytes = std::size_t{16} << 20U;
 struct ProblemReference {
     std::string name;
     std::string file;                          ///< as the user gave it
-    std::string sha256;                        ///< of the effective problem and every file that it refers to
+    std::string sha256;                        ///< checksum of the effective problem and every file that it refers to
     std::vector<LocatedError> warnings = {};   ///< what was found when it was read, with its places
     std::span<const Axis> axes = planar_axes;  ///< what the numbers of configurations are; static
 };

@@ -214,7 +214,7 @@ Solution read_solution(const std::string& path, const Problem& problem) {
         read_planning(reader, root, solution);
         read_certificate(reader, root, solution.certificate);
         read_plan(reader, root, problem, solution);
-        read_stops(reader, root, *solution.plan, solution.stops);
+        read_stops(reader, root, *solution.plan, solution.safe_stops);
         solution.order = problems::read_order(reader, root, problem);
     });
     return solution;

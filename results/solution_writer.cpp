@@ -232,7 +232,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"planning", planning_json(solution, solution.planning, problem.axes)},
         {"certificate", certificate_json(solution.certificate)},
         {"plan", plan_json(solution.plan)},
-        {"stops", stops_json(solution.stops, solution.plan ? solution.plan->tick_s : 0, problem.axes)},
+        {"stops", stops_json(solution.safe_stops, solution.plan ? solution.plan->tick_s : 0, problem.axes)},
         {"execution", execution_json(solution)},
         {"files", files},
     };

@@ -12,7 +12,7 @@ namespace downwash {
 /// back as the very same. `clearance_m` is empty without obstacles; rotors have a lag column only when they lag.
 [[nodiscard]] DOWNWASH_EXPORT std::string trajectory_csv(const Execution& execution);
 
-/// The same numbers as a table; a clearance without obstacles is NaN.
+/// The numbers of a trajectory as a table; a clearance without obstacles is NaN.
 [[nodiscard]] DOWNWASH_EXPORT NumberTable trajectory_table(const Execution& execution);
 
 }  // namespace downwash

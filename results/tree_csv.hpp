@@ -14,7 +14,7 @@ namespace downwash {
 /// @param axes of the problem
 [[nodiscard]] DOWNWASH_EXPORT std::string tree_csv(std::span<const TreeNode> tree, std::span<const Axis> axes);
 
-/// The same numbers as a table; the parent of a root is NaN.
+/// The numbers of a tree as a table; the parent of a root is NaN.
 [[nodiscard]] DOWNWASH_EXPORT NumberTable tree_table(std::span<const TreeNode> tree, std::span<const Axis> axes);
 
 }  // namespace downwash

@@ -19,7 +19,7 @@ enum class SurfaceKind {
 /// The kind of a surface and how its triangles have to be turned for it.
 struct MeshSides {
     SurfaceKind kind = SurfaceKind::sheet;
-    std::vector<bool> is_turned;  ///< for each triangle of a solid: two of its corners change places
+    std::vector<bool> is_turned;  ///< whether two corners of each triangle of a solid change places
 };
 
 /// Corners of equal coordinates are one corner; triangles that come down to an edge do not count. When a surface

@@ -15,7 +15,7 @@ namespace downwash {
 
 /// A box of an octree.
 struct OctreeBox {
-    Vector3 center_m;      ///< in the world
+    Vector3 center_m;      ///< centre in the world
     Vector3 size_m;        ///< along the axes of its octree
     std::uint32_t turned;  ///< which of Parts::octree_placements
 };

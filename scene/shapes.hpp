@@ -82,7 +82,7 @@ struct Obstacle {
 /// A solid that belongs to the multirotor, aligned with its body frame (b1 forward, y left, b3 up).
 struct BodyShape {
     Primitive shape;
-    Vector3 center_body_m{};  ///< in the body frame, from the multirotor's centre of mass
+    Vector3 center_body_m{};  ///< centre in the body frame, from the multirotor's centre of mass
 };
 
 /// What of the robot can touch something: the multirotor's bodies and the arm as a capsule.

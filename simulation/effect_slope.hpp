@@ -38,7 +38,7 @@ class LinearEffect final : public FlightEffect {
 
     Tangent rotor_[max_rotors] = {};
     Tangent body_ = {};
-    Tangent walls_ = {};                  ///< of 1 more than how near they are
+    Tangent walls_ = {};                  ///< 1 more than how near walls are
     std::unique_ptr<LinearEffect> read_;  ///< where a law reads elsewhere
 };
 

@@ -41,7 +41,7 @@ inline constexpr std::array all_outcomes{Outcome::ok,          Outcome::collisio
 /// No number of a flight is larger in size, infinite clearances apart: beyond, it says nothing about a vehicle, and a
 /// flight that comes to such a number is unstable. So is no number of a file of results.
 inline constexpr double max_result = 1e30;
-/// The same for the state of a vehicle, so that what follows from it is within max_result.
+/// No number of a vehicle's state is larger in size, so that what follows from it is within max_result.
 inline constexpr double max_state = 1e20;
 
 /// The vehicle at one control tick and the commands it holds until the next; SI units, plane coordinates.
@@ -56,7 +56,7 @@ struct FlightRow {
     double thrust_command_n = 0;              ///< sum of the rotor commands
     double pitch_torque_command_nm = 0;       ///< -sum x_i T_i of the rotor commands
     double arm_torque_nm = 0;
-    double thrust_n = 0;  ///< in aerodynamic effect, at t_s
+    double thrust_n = 0;  ///< thrust in aerodynamic effect, at t_s
     double pitch_torque_nm = 0;
     double clearance_m = 0;  ///< infinity without obstacles
     double end_effector_x_m = 0;
@@ -84,7 +84,7 @@ struct Execution : FlightSums {
     double max_saturation = 0;         ///< greatest demand over its limit; above 1 something was clipped
     double goal_error_m = 0;           ///< the worst of all goals
     std::vector<GoalVisit> goals;      ///< one for each, in their order
-    std::optional<TouchRecord> touch;  ///< of the last goal, where it asks for one and the flight came to it
+    std::optional<TouchRecord> touch;  ///< touch of the last goal, where it asks for one and the flight came to it
     int rotor_count = 0;
     bool has_rotor_lag = false;
     /// One per control tick, the last one at the end of the flight, or one tick before where its numbers at the end are
@@ -108,7 +108,7 @@ struct Execution : FlightSums {
                                                 const StopCondition& is_over = {},
                                                 std::optional<double> energy_budget_j = {});
 
-/// The same for one goal.
+/// Executes a plan for a single goal.
 [[nodiscard]] inline Execution execute(const FlightModel& model, const FlightState& start,
                                        const std::vector<ReferenceKnot>& knots, const Goal& goal, bool aero) {
     return execute(model, start, knots, std::span(&goal, 1), aero);
@@ -132,7 +132,7 @@ inline constexpr double settling_before_start_s = 20;
 
 /// The vehicle that has hovered at its start in a world until its controller has settled, without noise and gusts, with
 /// surface effects evaluated directly. Empty if it does not stay stable there.
-/// @param start at rest, as believed   @param aero as for execute()
+/// @param start at rest, nominal   @param aero as for execute()
 [[nodiscard]] DOWNWASH_EXPORT std::optional<FlightState> hovering_start(const FlightModel& model,
                                                                         const FlightState& start, bool aero,
                                                                         const FlightWorld& in);

@@ -140,7 +140,7 @@ struct FlightPool::Impl {
             }
             FlightLane& first_free = flights[static_cast<std::size_t>(busy++)];
             if (first_free.is_free()) {
-                first_free.take_over(lane);
+                first_free.move_from(lane);
             }
         }
         return busy;

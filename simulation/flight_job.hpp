@@ -18,7 +18,7 @@ struct FlightLeg {
 /// A flight along one or more segments, each beginning where the one before ended.
 struct FlightJob {
     FlightState start;
-    std::vector<FlightLeg> legs;  ///< at least one
+    std::vector<FlightLeg> legs;  ///< one after the other, at least one
     /// The vehicle must meet the goal in this many last ticks of the last leg, and in the state before them. Otherwise
     /// the flight is rejected as goal_missed. 0: no goal.
     std::int64_t judged_ticks = 0;

@@ -25,9 +25,9 @@ struct alignas(64) FlightLanes {
     // Unused where no flight is in a world.
     LaneRows<WorldMemory<double>> world_memory;
     LaneRows<WorldNumbers<double>> world;
-    std::uint64_t tape[lane_count];      ///< of its noise
-    double first_tick[lane_count];       ///< of the segment, from the start of the whole flight
-    LaneRows<ReferencePoint> reference;  ///< at the current tick
+    std::uint64_t tape[lane_count];      ///< tape of the world's noise
+    double first_tick[lane_count];       ///< first tick of the segment, from the start of the whole flight
+    LaneRows<ReferencePoint> reference;  ///< reference at the current tick
 
     // The segment that is flown.
     double coefficient[3][6][lane_count];
@@ -39,13 +39,13 @@ struct alignas(64) FlightLanes {
     LaneRows<PlanarPose> anchor;
     double free_motion_m[lane_count];  ///< negative: check after every tick
     double look_tick[lane_count];      ///< check from this tick of the segment on; infinite: never
-    double max_speed_m_s[lane_count];  ///< in (x, z): check from this speed on; infinite: never
+    double max_speed_m_s[lane_count];  ///< speed in (x, z) from which on to check; infinite: never
 
     LaneRows<FlightSums> sums;
     double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack
 
     // What a call found at its last tick.
-    LaneRows<PlanarPose> before;   ///< at the tick before
+    LaneRows<PlanarPose> before;   ///< pose at the tick before
     double rejection[lane_count];  ///< number of a Rejection
     /// 1 if a check is due because of the flyable area, free_motion_m, look_tick or max_speed_m_s.
     double is_unclear[lane_count];
@@ -54,9 +54,9 @@ struct alignas(64) FlightLanes {
 /// What a lane's flight does not change.
 struct FlightKernelModel {
     const TickModel* tick;
-    const void* law;  ///< that of the tick, as its own type: which one, and whether it flies Aided, knows the kernel
+    const void* law;  ///< law of the tick; the kernel knows its type, and whether it flies Aided
     RuleLimits limits;
-    MotionReach reach;  ///< with hubs as part of the body
+    MotionReach reach;  ///< how far a motion moves any point of the robot, hubs included
     bool has_map;
     RotorMaps maps;
     bool is_in_worlds;  ///< some flight needs what WorldNumbers says

@@ -64,7 +64,7 @@ class FlightLane {
     }
 
     /// Goes on with another lane's job, and leaves that one free.
-    void take_over(FlightLane& other) {
+    void move_from(FlightLane& other) {
         copy_numbers(other);
         job_ = std::exchange(other.job_, nullptr);
         leg_ = other.leg_;
@@ -247,7 +247,7 @@ class FlightLane {
     const FlownWorld* world_ = nullptr;
     std::int64_t first_tick_ = 0;
     double min_clearance_m_ = HUGE_VAL;  ///< since the job began, when wanted
-    int level_ = 0;                      ///< of the free motion found last
+    int level_ = 0;                      ///< level of the free motion found last
 };
 
 }  // namespace downwash::simulation

@@ -55,7 +55,7 @@ std::shared_ptr<const AeroMap> FlightModel::remake_map(const AeroMap& before, co
     return std::make_shared<const AeroMap>(before.rebuilt(layers(), changed, threads, is_over));
 }
 
-bool FlightModel::is_mine(const AeroMap& map, const Bounds& bounds) const {
+bool FlightModel::matches(const AeroMap& map, const Bounds& bounds) const {
     return map_key(map.layers(), map.plane(), map.extent()) ==
            map_key(layers(), plane_, rotor_extent(robot_.rotors, bounds));
 }

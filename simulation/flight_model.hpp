@@ -42,7 +42,7 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] const Robot& robot() const noexcept { return robot_; }
     [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
     [[nodiscard]] const simulation::TickModel& tick() const noexcept { return tick_; }
-    /// The world in which everything is as believed.
+    /// The world in which everything is nominal.
     [[nodiscard]] const FlownWorld& nominal_world() const noexcept { return nominal_world_; }
     /// Whether the plain tick is that of the nominal world: there is no drag, and the controller sees the state at
     /// once.
@@ -88,14 +88,14 @@ class DOWNWASH_EXPORT FlightModel {
                                                           const std::filesystem::path& cache = {},
                                                           const StopCondition& is_over = {}) const;
 
-    /// The same from that of a scene of which parts have changed; see AeroMap::rebuilt().
+    /// Makes the map anew from that of the scene before parts of it changed; see AeroMap::rebuilt().
     /// @param before map of the same robot, model and bounds   @param changed boxes around the parts, before and after
     [[nodiscard]] std::shared_ptr<const AeroMap> remake_map(const AeroMap& before,
                                                             const std::vector<BoundingBox>& changed, int threads = 1,
                                                             const StopCondition& is_over = {}) const;
 
     /// Whether a map is the one that make_map() makes for these bounds.
-    [[nodiscard]] bool is_mine(const AeroMap& map, const Bounds& bounds) const;
+    [[nodiscard]] bool matches(const AeroMap& map, const Bounds& bounds) const;
 
     /// The vehicle at a pose with the speeds u of its coordinates [m/s, m/s, rad/s, rad/s], controller rested, no
     /// energy spent.

@@ -44,14 +44,14 @@ inline constexpr double unstable_error_m = 3.0;
 /// The rules of a planned flight.
 struct FlightRules {
     double margin_m = 0.05;             ///< least clearance, also between ticks: see max_unseen_motion_m
-    Bounds bounds;                      ///< of the centre of mass
+    Bounds bounds;                      ///< area that the centre of mass may not leave
     double max_tracking_error_m = 0.3;  ///< distance of (x, z) from the reference
     double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)
     double max_saturation = 1;          ///< greatest demand on a rotor or the joint over its limit
-    double max_pitch_rate_rad_s = std::numeric_limits<double>::infinity();  ///< of the vehicle
+    double max_pitch_rate_rad_s = std::numeric_limits<double>::infinity();  ///< largest pitch rate of the vehicle
     std::function<bool()> is_over;     ///< polled now and then; true ends the flight as interrupted
     bool measures_clearance = false;   ///< integrates clearance (slow), for the objective of that name
-    bool finds_min_clearance = false;  ///< of every flight, for certificates
+    bool finds_min_clearance = false;  ///< whether every flight finds its least clearance, for certificates
 };
 
 /// Integrand of the objective `clearance` [1/m].

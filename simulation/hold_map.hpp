@@ -11,7 +11,7 @@ namespace downwash {
 /// Where a vehicle can hover with one arm angle: a verdict for every node of a regular grid of the plane.
 struct HoldMap {
     double arm_rad = 0;
-    double x_low_m = 0, z_low_m = 0;  ///< of the first node
+    double x_low_m = 0, z_low_m = 0;  ///< place of the first node
     double step_m = 0;
     std::size_t columns = 0, rows = 0;  ///< nodes along x and z
     /// One entry a node, along x first.

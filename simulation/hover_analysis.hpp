@@ -26,10 +26,11 @@ enum class HoldVerdict : std::uint8_t {
 
 /// How a small disturbance of a hover develops, and the stiffnesses that compete.
 struct HoverStability {
-    /// Of the Jacobian of one tick at the fixed point; stable below 1. Infinite where numbers are too large to tell.
+    /// Spectral radius of the Jacobian of one tick at the fixed point; stable below 1. Infinite where numbers are too
+    /// large to tell.
     double spectral_radius = 0;
-    double growth_rate_1_s = 0;  ///< of the slowest decay, or fastest growth: ln(spectral radius) / tick
-    double frequency_rad_s = 0;  ///< of that mode; 0 if it does not oscillate
+    double growth_rate_1_s = 0;  ///< rate of the slowest decay, or fastest growth: ln(spectral radius) / tick
+    double frequency_rad_s = 0;  ///< frequency of that mode; 0 if it does not oscillate
     int growing_modes = 0;       ///< eigenvalues outside the unit circle
 
     double force_slope_n_m = 0;      ///< dF/dz at the trim commands; positive pulls away from the height that is held

@@ -18,7 +18,7 @@ struct HoverTrim {
     double rotor_command_n[max_rotors] = {};
     double joint_torque_nm = 0;
     double saturation = 0;           ///< greatest demand over its limit, as in a tick
-    double pitch_reference_rad = 0;  ///< that the controller asks for in vain, to counter the surfaces' torque
+    double pitch_reference_rad = 0;  ///< pitch that the controller asks for in vain, to counter the surfaces' torque
     double height_gain_1_s2 = 0;     ///< vertical acceleration that the controller sets against a metre of error
     double pitch_gain_1_s2 = 0;      ///< pitch acceleration that it sets against a radian of error
     /// The numbers of the state on which later ticks depend: an integrator at its limit is none of them.

@@ -18,8 +18,8 @@ namespace downwash::simulation {
 /// The layers of a map that rotors and body of a vehicle fly through.
 struct RotorMaps {
     const AeroMap* map;
-    MapView view[max_rotors + 2];       ///< of every rotor; at body_place and at wall_place
-    std::size_t layer[max_rotors + 2];  ///< of the map, for the same
+    MapView view[max_rotors + 2];  ///< map of every rotor; at body_place and wall_place those of the body and of walls
+    std::size_t layer[max_rotors + 2];  ///< layer of the map, in the same order
     /// The earliest rotor, or the rotor itself, that shares its look-up: rotors one behind the other as seen along the
     /// lateral axis, where their layers hold the same.
     int same_as[max_rotors];

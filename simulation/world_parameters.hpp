@@ -30,8 +30,9 @@ struct DangerQuantiles {
 struct WorldParameter {
     std::string name;  ///< Key below `uncertainty`, and an axis or a rotor's number where a key stands for several.
     Spread Uncertainty::*spread = nullptr;
-    double (*nominal)(const Robot&) = nullptr;  ///< Of a number that the robot has; its range is of the number itself.
-    double World::*value = nullptr;             ///< nullptr: World::rotor_thrust_scale[rotor]
+    double (*nominal)(const Robot&) =
+        nullptr;                     ///< Value of a number that the robot has; its range is that of the number itself.
+    double World::*value = nullptr;  ///< nullptr: World::rotor_thrust_scale[rotor]
     int rotor = 0;
     DangerQuantiles danger = {};
 
@@ -53,7 +54,7 @@ struct UncertaintyKey {
     std::vector<std::string_view> forms = {};
     double low = 0, high = 0;                   ///< Least and greatest number in the spread.
     double (*nominal)(const Robot&) = nullptr;  ///< See WorldParameter::nominal.
-    double World::*noise = nullptr;  ///< Of a number that is drawn anew in every tick: where worlds have its sd.
+    double World::*noise = nullptr;  ///< Where worlds keep the sd of a number that is drawn anew in every tick.
 };
 
 /// Every key but `wind.gust_length_m`, which is no spread, in the order of files; groups come before their keys.

@@ -31,7 +31,7 @@ struct EffectModelInfo {
     std::string_view name;      ///< as in a problem file, for example "cheeseman-bennett"
     std::string_view surface;   ///< what it was made for: "ground", "ceiling" or "any"
     std::string_view source;    ///< where the formula comes from
-    std::string_view formula;   ///< in plain text; K over zeta = z/R
+    std::string_view formula;   ///< formula in plain text; K over zeta = z/R
     std::string_view validity;  ///< range of z/R in which the model was shown to hold
     double valid_from;          ///< where that range begins; 0 if unknown
     double valid_to;            ///< where that range ends; infinite if unknown

@@ -24,7 +24,7 @@ struct Measurement {
 /// The content of a file of measurements.
 struct DOWNWASH_EXPORT Measurements {
     std::vector<std::string> columns;  ///< names of `cells`
-    std::vector<Measurement> points;   ///< in the order of the file
+    std::vector<Measurement> points;   ///< points in the order of the file
 
     /// The position of a column in `columns`; empty if there is none of that name.
     [[nodiscard]] std::optional<std::size_t> index(std::string_view column) const;

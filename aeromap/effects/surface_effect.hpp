@@ -39,7 +39,7 @@ struct DOWNWASH_EXPORT SurfaceEffect {
     SurfaceEffect(EffectModel which);
 
     EffectModel model = EffectModel::none;
-    std::array<double, max_model_parameters> parameters{};  ///< in the order of info(model).parameters
+    std::array<double, max_model_parameters> parameters{};  ///< values in the order of info(model).parameters
     // Of the model `table` only:
     std::string file;                          ///< where the table comes from
     std::shared_ptr<const EffectTable> table;  ///< K of points; never empty while the model is `table`

@@ -15,7 +15,7 @@ namespace downwash {
 
 /// Options of a fit.
 struct FitOptions {
-    RotorNeighbours neighbours;                         ///< for the multirotor models; default: one rotor alone
+    RotorNeighbours neighbours;  ///< rotor layout of the multirotor models; default: one rotor alone
     std::vector<std::pair<std::string, double>> fixed;  ///< parameters that keep a value, by name
     bool is_weighted = false;                           ///< weights each residual by 1 / sigma
 };

@@ -7,7 +7,7 @@ namespace downwash {
 /// Where a function is least within a range.
 struct LeastPlace {
     double at = 0;
-    bool is_at_bound = false;  ///< at an end of the range
+    bool is_at_bound = false;  ///< whether it lies at an end of the range
 };
 
 /// @param function finite from `low` to `high`   @pre 0 <= low < high

@@ -23,7 +23,7 @@ struct TiltFit {
     TiltScore fitted;
     std::optional<double>
         standard_error;  ///< standard error of the loss; empty with a single measurement or at a bound
-    TiltScore as_level;  ///< with the loss 0
+    TiltScore as_level;  ///< score with the loss 0
     /// How well, for each source with tilted rotors, the loss fitted to all others predicts it; empty with one source.
     std::vector<std::pair<std::string, TiltScore>> left_out;
 };

@@ -31,7 +31,7 @@ struct WallShares {
 
 /// Fitted walls.
 struct WallFit : WallShares {
-    bool is_decay_at_bound = false;  ///< at the end of the range of a problem file, 0.05 or 20
+    bool is_decay_at_bound = false;  ///< whether it lies at the end of the range of a problem file, 0.05 or 20
     /// Shares of each facility alone, with the decay of all; empty with one facility.
     std::vector<std::pair<std::string, WallShares>> by_facility;
 };

@@ -44,8 +44,8 @@ struct FactorGridParts {
     /// The frame of the coordinates x, y, z: y points to the left, z up.
     PlaneOfMotion frame;
     GridAxis x, y, z;
-    /// Of a planar grid: the distances to the left of the plane [m] at which its layers are valid, rising. Empty: one
-    /// layer that is valid at any distance.
+    /// The distances of a planar grid: those to the left of the plane [m] at which its layers are valid, rising. Empty:
+    /// one layer that is valid at any distance.
     std::vector<double> lateral_offsets_m;
     /// "factor" and any of "ground", "ceiling" (one-sided factors) and "flyable" (0 or 1), each once.
     std::vector<GridField> fields;
@@ -90,7 +90,7 @@ class DOWNWASH_EXPORT FactorGrid {
     /// Whether a rotor may fly with its hub there: the grid contains the hub, and all corners of its cell are 1 in the
     /// field "flyable", if there is such a field.
     [[nodiscard]] bool is_flyable(const Vector3& hub_m) const noexcept { return is_flyable_between({&hub_m, 1}); }
-    /// The same for all hubs in the convex hull of some corners at once; false in doubt.
+    /// Whether that holds for all hubs in the convex hull of some corners at once; false in doubt.
     [[nodiscard]] bool is_flyable_between(std::span<const Vector3> corners_m) const noexcept;
 
  private:

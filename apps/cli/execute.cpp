@@ -91,11 +91,11 @@ void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& wor
     const Problem flown = in_order(problem, solution.order);
     const auto model = make_flight_model(problem);
     const FlightWorld in{world ? &*world : nullptr, 0};
-    FlightState believed = start_state(*model, problem.start);
+    FlightState nominal = start_state(*model, problem.start);
     if (world) {
-        believed.world = memory_at_start(*world, believed.plant);
+        nominal.world = memory_at_start(*world, nominal.plant);
     }
-    const auto start = world && is_at_rest(problem.start) ? hovering_start(*model, believed, aero, in) : believed;
+    const auto start = world && is_at_rest(problem.start) ? hovering_start(*model, nominal, aero, in) : nominal;
     if (!start) {
         throw std::runtime_error("in this world the vehicle cannot hover at its start: its controller diverges there");
     }

@@ -15,8 +15,8 @@ struct ModelChoice {
     std::string name;
     std::vector<std::string> set;         ///< "NAME=VALUE" for parameters
     std::string table;                    ///< file, of the model `table`
-    std::optional<double> d_over_r;       ///< of a table over two distances
-    std::optional<double> rotor_spacing;  ///< of a square quadrotor, for the multirotor models [radii]
+    std::optional<double> d_over_r;       ///< second distance of a table over two
+    std::optional<double> rotor_spacing;  ///< spacing of a square quadrotor, for the multirotor models [radii]
     std::optional<double> max_factor;
 };
 

@@ -17,12 +17,12 @@ struct PlotRequest {
     int rotor = 1;
     std::optional<double> lateral_m;
     std::optional<double> arm_deg;
-    double pitch_deg = 0;          ///< of the whole vehicle
+    double pitch_deg = 0;          ///< pitch of the whole vehicle
     std::vector<double> x_m, z_m;  ///< low and high, or empty
     std::vector<std::string> models;
     std::string data, surface, source;
     std::vector<double> z_over_r;
-    std::vector<double> tilt_deg;  ///< of rotors over ground; empty: level
+    std::vector<double> tilt_deg;  ///< tilts of rotors over ground; empty: level
     std::optional<double> max_factor, rotor_spacing;
     bool is_flow = false;
     std::string output;

@@ -12,7 +12,7 @@ namespace downwash::cli {
 /// @param words the name of the program, then its arguments   @return the exit code
 [[nodiscard]] int run_program(std::span<char*> words, void (*add_commands)(Command program, Action& action));
 
-/// The same for the program of an optional component: `downwash-bench run` does what `downwash bench run` does.
+/// Runs the program of an optional component: `downwash-bench run` does what `downwash bench run` does.
 /// @param name of the command that stands before its arguments: "bench"
 [[nodiscard]] int run_part(const char* name, int argc, char** argv,
                            void (*add_commands)(Command program, Action& action));

@@ -41,7 +41,7 @@ class ProgressDisplay {
     Clock::time_point next_task_log_ = Clock::now() + task_period;
     std::string task_;
     Clock::time_point task_began_ = Clock::now();
-    double logged_share_ = 0;  ///< of the task
+    double logged_share_ = 0;  ///< share of the task that was logged last
 };
 
 }  // namespace downwash::cli

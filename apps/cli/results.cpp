@@ -238,8 +238,8 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     if (solution.certificate) {
         text += certificate_rows(*solution.certificate, folder);
     }
-    if (solution.stops) {
-        const double share = solution.stops->share_without;
+    if (solution.safe_stops) {
+        const double share = solution.safe_stops->share_without;
         text += row("stops", share > 0 ? fmt::format("none is known to be safe for {:.1f} % of the way", 100 * share)
                                        : "safe all along the way");
     }

@@ -55,7 +55,7 @@ std::string outcome_of(const Remedy& remedy) {
 void print_remedies(const Problem& problem, SolveOptions options, bool is_quiet) {
     constexpr double limit_s = 5;
     fmt::print("\nWhat would help, each tried by itself for up to {} s:\n\n",
-               limit_s * static_cast<double>(1 + problem.stops.size()));
+               limit_s * static_cast<double>(1 + problem.goals_before.size()));
     std::fflush(stdout);
     ProgressDisplay display(is_quiet);
     options.on_progress = [&](const Progress& progress) { display.show(progress); };

@@ -14,7 +14,7 @@ namespace downwash::cli {
 /// What `validate` finds.
 struct Validation {
     judge::JudgedFlight flight;
-    std::optional<std::uint64_t> world;  ///< of that flight; empty: the nominal one
+    std::optional<std::uint64_t> world;  ///< world of that flight; empty: the nominal one
     bool has_flight_claims = false;      ///< the file says something about a flight
     std::vector<judge::Disagreement> disagreements;
     std::optional<judge::WorldRuns> worlds;

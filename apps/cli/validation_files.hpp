@@ -19,7 +19,7 @@ struct ValidationSource {
     std::string problem_file;  ///< as the user gave it
     std::string plan;          ///< as the user gave it: solution.json or its folder
     SourceFile solution;       ///< solution.json itself
-    std::uint64_t seed = 1;    ///< of the worlds
+    std::uint64_t seed = 1;    ///< seed of the worlds
     int threads = 1;
 };
 

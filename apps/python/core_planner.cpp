@@ -124,7 +124,7 @@ SceneChange change_of(const CoreChange& given) {
     const Problem values = parse_values(given.text, "<dict>");
     change.put = values.obstacles;
     if (given.has_goal) {
-        if (!values.stops.empty() || !values.targets.empty() || asks_for_contact(values.goal)) {
+        if (!values.goals_before.empty() || !values.targets.empty() || asks_for_contact(values.goal)) {
             throw_input_error("changes to one goal: expected end_effector, configuration or any_of", "goal");
         }
         change.goal = values.goal;

@@ -35,7 +35,7 @@ CoreProblem changed(const CoreProblem& before, const std::vector<std::pair<std::
     return {changed_problem(before.placed, list), before.file};
 }
 
-/// What the worlds 1 to `count` have otherwise than believed, one row each.
+/// What the worlds 1 to `count` have otherwise than the nominal one, one row each.
 py::dict drawn_worlds(const CoreProblem& of, std::uint64_t count, const std::optional<std::uint64_t>& seed) {
     const Problem& problem = of.problem();
     if (!problem.uncertainty) {

@@ -40,7 +40,7 @@ CoreSolution solve_problem(const std::shared_ptr<CoreProblem>& problem, int thre
         options.map_cache = cache;
         const Problem& asked = problem->problem();
         const bool needs_map = asked.planner.variant == Variant::mp_arm_ada && asked.aero.enabled;
-        if (needs_map && options.map != nullptr && !problem->model()->is_mine(*options.map, asked.bounds)) {
+        if (needs_map && options.map != nullptr && !problem->model()->matches(*options.map, asked.bounds)) {
             throw_input_error("is of another scene, robot, model or bounds: expected a map of the same problem", "map");
         }
         return solve(problem->placed.plannable, options);
@@ -76,12 +76,12 @@ CoreSolution executed(const CoreSolution& of, const std::shared_ptr<CoreProblem>
     solution.execution = interruptible(stop, [&](Attendance& attendance) {
         const FlightModel& model = *problem->model();
         const FlightWorld in{world ? &*world : nullptr, 0};
-        FlightState believed = start_state(model, problem->problem().start);
+        FlightState nominal = start_state(model, problem->problem().start);
         if (world) {
-            believed.world = memory_at_start(*world, believed.plant);
+            nominal.world = memory_at_start(*world, nominal.plant);
         }
-        const auto start = world && is_at_rest(problem->problem().start) ? hovering_start(model, believed, aero, in)
-                                                                         : std::optional(believed);
+        const auto start = world && is_at_rest(problem->problem().start) ? hovering_start(model, nominal, aero, in)
+                                                                         : std::optional(nominal);
         if (!start) {
             throw_input_error("has a vehicle that cannot hover at its start: its controller diverges there", "world");
         }

@@ -45,7 +45,7 @@ class Attendance {
     std::stop_source interrupt_;
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::vector<std::function<void()>> callbacks_;  ///< that wait
+    std::vector<std::function<void()>> callbacks_;  ///< callbacks that wait
     bool is_last_told_ = false;                     ///< whether the last one was told by tell()
     bool is_closed_ = false;
     std::optional<py::error_already_set> raised_;

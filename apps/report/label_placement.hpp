@@ -34,7 +34,7 @@ struct LabelGround {
 struct PlacedLabel {
     std::size_t shape = 0;
     Bounds box;
-    bool is_inside = false;  ///< in its own area
+    bool is_inside = false;  ///< whether the label lies in its own area
     /// A line from the name to its shape, unless it stands right beside it.
     std::optional<std::pair<PlanePoint, PlanePoint>> leader;
 };

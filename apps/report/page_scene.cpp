@@ -210,7 +210,7 @@ std::string_view goal_order(const Problem& problem, const std::optional<VisitOrd
     if (!problem.targets.empty()) {
         return in_order(problem, order).targets.empty() ? "in_turn" : "any_order";
     }
-    return !problem.stops.empty() ? "in_turn" : alternatives(problem.goal).size() > 1 ? "any_of" : "single";
+    return !problem.goals_before.empty() ? "in_turn" : alternatives(problem.goal).size() > 1 ? "any_of" : "single";
 }
 
 /// The classes of thrust ratios and their colours, as in pictures.

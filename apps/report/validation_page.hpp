@@ -35,7 +35,7 @@ struct ValidationRecord {
     bool has_flight_claims = false;  ///< the file says something about a flight
     std::string solution_text;       ///< the file that was judged, JSON
     std::uint64_t seed = 0;          ///< seed of the worlds
-    std::string command;             ///< that made the page
+    std::string command;             ///< command that made the page
     std::optional<ClearanceOverTime> clearance;
     std::vector<PlayableFlight> flights;  ///< the judge's own first, then the worst ones
 };

@@ -18,7 +18,7 @@ namespace ob = ::ompl::base;
 namespace oc = ::ompl::control;
 
 PlannableProblem with_one_goal(Problem problem) {
-    if (!problem.stops.empty()) {
+    if (!problem.goals_before.empty()) {
         throw InputError({KeyError{"goal", "is a list of goals to visit in turn: expected one goal"}});
     }
     return plannable(std::move(problem));

@@ -12,7 +12,7 @@ namespace downwash::planning {
 
 /// How a flight ends: a reference segment to rest at the goal, and the hold there.
 struct Closing {
-    ReferenceKnot goal;   ///< at rest, in ticks since the start
+    ReferenceKnot goal;   ///< goal at rest, in ticks since the start
     FlightState arrival;  ///< the vehicle before the hold
     FlightState end;      ///< the vehicle after the hold
     double cost = 0;      ///< cost of the whole flight, hold included

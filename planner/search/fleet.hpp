@@ -34,7 +34,7 @@ struct Counterexample {
 /// The worlds of a search beside the nominal one, and the fleet at its start. Empty for a search in one world.
 struct SearchWorlds {
     std::vector<FlownWorld> worlds;
-    Fleet start;  ///< in these worlds
+    Fleet start;  ///< start in each of these worlds
 };
 
 }  // namespace downwash::planning

@@ -12,7 +12,7 @@ namespace downwash::planning {
 /// from it is a pure function.
 struct FlightPoint {
     FlightState vehicle;       ///< bodies, rotor lag, energy and the controller's memory
-    ReferencePoint reference;  ///< that the vehicle follows
+    ReferencePoint reference;  ///< reference that the vehicle follows
     Configuration rest;        ///< where the reference would come to rest; stands for the place of this moment
     double cost = 0;           ///< cost of the flight from the start, in the objective's unit
     std::int64_t ticks = 0;    ///< since the start

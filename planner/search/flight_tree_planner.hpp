@@ -17,7 +17,7 @@ namespace downwash::planning {
 
 /// A plan that the planner's own model accepts, with the hover at the goal.
 struct Candidate {
-    std::vector<FlightPoint> moments;  ///< at the plan's knots, then after the hover
+    std::vector<FlightPoint> moments;  ///< moments at the plan's knots, then after the hover
     double cost = 0;
     std::uint64_t iteration = 0;
 };
@@ -131,7 +131,7 @@ class FlightTreePlanner : public ompl::base::Planner {
     std::vector<HandedOver> handed_over_;
     int failures_in_a_row_ = 0;           ///< failures of plans that were executed
     double handed_over_cost_ = HUGE_VAL;  ///< cost of the tree's plan that the refiner got last
-    std::size_t idle_rounds_ = 0;         ///< in a row, in which the refiner had no plan
+    std::size_t idle_rounds_ = 0;         ///< rounds in a row in which the refiner had no plan
     double tree_left_ = 0;                ///< work in this round; below 0 what was done too much
     double refiner_left_ = 0;             ///< work of the refiner in this round
 };

@@ -11,9 +11,9 @@ namespace downwash::planning {
 
 /// A way through a narrow passage: from rest at one place to rest at another, through a point at speed.
 struct Passage {
-    ReferencePoint run_up;   ///< at rest
+    ReferencePoint run_up;   ///< reference at rest
     ReferencePoint through;  ///< moving and, where the thrust has a limit, accelerated: the vehicle is tilted there
-    ReferencePoint run_out;  ///< at rest
+    ReferencePoint run_out;  ///< reference at rest
 };
 
 /// A passage flown backwards: with the same accelerations, so within the same limits.

@@ -67,7 +67,7 @@ class PlanRefiner {
         int number;        ///< number of the plan that was taken on
         double step = 1;   ///< size of changes, as a share of the largest
         int failures = 0;  ///< batches since the last success, or since steps became large again
-        int batches = 0;   ///< that it was worked on
+        int batches = 0;   ///< batches in which it was worked on
     };
     /// A changed plan that may be worth flying.
     struct Change {

@@ -56,7 +56,7 @@ struct TreeNode {
     static constexpr int no_parent = -1;
 
     Configuration at;
-    int parent = no_parent;  ///< in the same list
+    int parent = no_parent;  ///< number of the parent in the same list
 };
 
 /// Name as in solution files: "solved".

@@ -37,11 +37,11 @@ std::optional<Execution> executed(const Problem& problem, const Plan& plan, bool
     const auto model = make_flight_model(problem);
     const std::optional<FlownWorld> flown = world ? std::optional(make_world(problem.robot, *world)) : std::nullopt;
     const FlightWorld in{flown ? &*flown : nullptr, 0};
-    FlightState believed = start_state(*model, problem.start);
+    FlightState nominal = start_state(*model, problem.start);
     if (flown) {
-        believed.world = memory_at_start(*flown, believed.plant);
+        nominal.world = memory_at_start(*flown, nominal.plant);
     }
-    const auto start = flown && is_at_rest(problem.start) ? hovering_start(*model, believed, aero, in) : believed;
+    const auto start = flown && is_at_rest(problem.start) ? hovering_start(*model, nominal, aero, in) : nominal;
     if (!start) {
         return std::nullopt;
     }
@@ -323,7 +323,7 @@ TEST_CASE("Straight plans that end in trouble end the same way") {
 TEST_CASE("Goals in a row and alternatives are met as the planner meets them") {
     Problem problem = ceiling_problem();
     problem.goal = configuration_goal(2, 2.5);
-    problem.stops = {configuration_goal(-2, 2)};
+    problem.goals_before = {configuration_goal(-2, 2)};
     Goal either;
     either.any_of = {tip_goal(5, 1), configuration_goal(2, 2.5)};
     problem.goal = either;

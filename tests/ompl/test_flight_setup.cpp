@@ -97,6 +97,6 @@ TEST_CASE("a problem that cannot be planned leads to its errors") {
     problem.start.z_m = -100;
     CHECK_THROWS_AS(FlightSetup(problem), InputError);
     problem = test::ceiling_problem();
-    problem.stops.push_back(problem.goal);
+    problem.goals_before.push_back(problem.goal);
     CHECK_THROWS_WITH(FlightSetup(problem), Catch::Contains("expected one goal"));
 }

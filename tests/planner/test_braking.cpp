@@ -72,7 +72,7 @@ TEST_CASE("a cheaper plan that can be left for a hover for less of its time does
     StricterStops stricter(problem);
     const Found free = searched(problem, nullptr, {});
     REQUIRE(free.status == Status::solved);
-    CHECK_FALSE(free.stops);
+    CHECK_FALSE(free.safe_stops);
     std::vector<double> shares;
     SolveOptions options;
     options.on_plan = [&](const FoundPlan& found) {
@@ -80,19 +80,19 @@ TEST_CASE("a cheaper plan that can be left for a hover for less of its time does
     };
     const Found preferring = searched(problem, &*stricter.finder, options);
     REQUIRE(preferring.status == Status::solved);
-    REQUIRE(preferring.stops);
-    CHECK(preferring.stops->share_without == shares.back());
+    REQUIRE(preferring.safe_stops);
+    CHECK(preferring.safe_stops->share_without == shares.back());
     for (std::size_t i = 1; i < shares.size(); ++i) {
         CHECK(shares[i] <= shares[i - 1] + 0.01);
     }
-    CHECK(stricter.finder->along(*free.plan).share_without > preferring.stops->share_without + 0.01);
+    CHECK(stricter.finder->along(*free.plan).share_without > preferring.safe_stops->share_without + 0.01);
     CHECK(preferring.cost > free.cost);
 }
 
 TEST_CASE("of two ways through several goals the one that can be left for more of its time is taken") {
     Problem problem = long_flight();
-    problem.stops = {test::configuration_goal(0, 2.5)};
-    problem.stops[0].hold_s = 1;
+    problem.goals_before = {test::configuration_goal(0, 2.5)};
+    problem.goals_before[0].hold_s = 1;
     problem.planner.max_iterations = 400;
     const auto flight_model = make_flight_model(problem);
     const planning::PlannerModel model{flight_model, flight_model->make_map(problem.bounds)};
@@ -107,8 +107,8 @@ TEST_CASE("of two ways through several goals the one that can be left for more o
             planning::search_flights(part->problem, problem, model, *part->before, {}, part->options);
         Found& found = result.found;
         if (part->before->goals.size() == 1 && found.status == Status::solved) {
-            found.stops.emplace();
-            found.stops->share_without = (ways++ == 0) == is_first_better ? 0.2 : 0.4;
+            found.safe_stops.emplace();
+            found.safe_stops->share_without = (ways++ == 0) == is_first_better ? 0.2 : 0.4;
             if (ways == 1) {
                 first_cost = part->before->cost + found.cost;
             }
@@ -118,7 +118,7 @@ TEST_CASE("of two ways through several goals the one that can be left for more o
     const Found found = std::move(sequence).result().found;
     REQUIRE(found.status == Status::solved);
     REQUIRE(ways > 1);
-    REQUIRE(found.stops);
-    CHECK(found.stops->share_without == 0.2);
+    REQUIRE(found.safe_stops);
+    CHECK(found.safe_stops->share_without == 0.2);
     CHECK((found.cost == first_cost) == is_first_better);
 }

@@ -168,8 +168,8 @@ TEST_CASE("MP-ARM and MP-ARM-DA learn in which share of worlds their plan fails,
 
 TEST_CASE("Goals in turn are certified as a whole, from start to end") {
     Problem problem = uncertain_problem();
-    problem.stops = {tip_goal(-1, 4.2)};
-    problem.stops[0].hold_s = 1;
+    problem.goals_before = {tip_goal(-1, 4.2)};
+    problem.goals_before[0].hold_s = 1;
     problem.planner.max_iterations = 300;
     const Solution solution = solve(problem);
     REQUIRE(solution.status == Status::solved);
@@ -181,8 +181,8 @@ TEST_CASE("Goals in turn are certified as a whole, from start to end") {
 TEST_CASE("Flights of a plan that fail say on the way to which goal, as direct flights do") {
     const std::size_t weak = GENERATE(std::size_t{0}, std::size_t{1});  // the part that comes too near to the ceiling
     Problem problem = ceiling_problem();
-    problem.stops = {tip_goal(-1, weak == 0 ? 4.8 : 4.65)};
-    problem.stops[0].hold_s = 1;
+    problem.goals_before = {tip_goal(-1, weak == 0 ? 4.8 : 4.65)};
+    problem.goals_before[0].hold_s = 1;
     problem.planner.max_iterations = 300;
     const Solution solution = solve(problem);
     REQUIRE(solution.status == Status::solved);
@@ -214,9 +214,9 @@ TEST_CASE("Flights of a plan that fail say on the way to which goal, as direct f
 
 TEST_CASE("A search whose certificates fail on the way to an earlier goal names that goal and ends") {
     Problem problem = uncertain_problem();
-    problem.stops = {tip_goal(-1, 4.2)};
-    test::end_effector(problem.stops[0]).tolerance_m = 0.03;
-    problem.stops[0].hold_s = 1;
+    problem.goals_before = {tip_goal(-1, 4.2)};
+    test::end_effector(problem.goals_before[0]).tolerance_m = 0.03;
+    problem.goals_before[0].hold_s = 1;
     problem.uncertainty->position_bias_m = Spread::of_sd(0.03);
     test::end_effector(problem.goal).tolerance_m = 0.5;
     problem.planner.max_iterations = 300;
@@ -244,8 +244,8 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
 
 TEST_CASE("A plan that ends at the first of two goals has no certificate") {
     Problem problem = uncertain_problem();
-    problem.stops = {tip_goal(-1, 4.2)};
-    problem.stops[0].hold_s = 1;
+    problem.goals_before = {tip_goal(-1, 4.2)};
+    problem.goals_before[0].hold_s = 1;
     problem.obstacles.push_back(box("wall", {0.3, 8, 5}, {1.5, 0, 2.5}));  // the second goal is behind it
     problem.planner.max_iterations = 60;
     const Solution solution = solve(problem);
@@ -325,7 +325,7 @@ TEST_CASE("A remedy that cannot be planned says why, and who wants no more gets 
     CHECK_THAT(remedies[1].error, Catch::Contains("goal"));
     CHECK_FALSE(remedies[1].helps);
 
-    problem.stops = {problem.goal};
+    problem.goals_before = {problem.goal};
     problem.goal = configuration_goal(3, 2);
     std::stop_source after_one;
     options.stop = after_one.get_token();
@@ -333,8 +333,8 @@ TEST_CASE("A remedy that cannot be planned says why, and who wants no more gets 
     REQUIRE(of_several.size() == 1);
     CHECK(of_several[0].change == "all goals 0.1 m lower");
 
-    problem.targets = {problem.stops.front(), std::exchange(problem.goal, {})};
-    problem.stops.clear();
+    problem.targets = {problem.goals_before.front(), std::exchange(problem.goal, {})};
+    problem.goals_before.clear();
     std::stop_source after_two;
     options.stop = after_two.get_token();
     const auto of_targets = try_remedies(problem, options, 10, [&](const Remedy& remedy) {

@@ -38,7 +38,7 @@ Problem tour(Variant variant) {
     problem.planner.variant = variant;
     problem.planner.max_iterations = variant == Variant::mp_arm ? 3000 : 180;
     problem.goal.hold_s = 3;  // the tip to (3, 4.8)
-    problem.stops = {place(0, 3, 2), place(-2, 2, 1.5)};
+    problem.goals_before = {place(0, 3, 2), place(-2, 2, 1.5)};
     return problem;
 }
 
@@ -134,8 +134,8 @@ TEST_CASE("goals in a row are visited in their order, each held for its own time
         const Solution solution = solve(problem);
         REQUIRE(solution.status == Status::solved);
         const Plan& plan = *solution.plan;
-        const std::int64_t first = standing_tick(plan, test::configuration(problem.stops[0]), 2);
-        const std::int64_t second = standing_tick(plan, test::configuration(problem.stops[1]), 1.5);
+        const std::int64_t first = standing_tick(plan, test::configuration(problem.goals_before[0]), 2);
+        const std::int64_t second = standing_tick(plan, test::configuration(problem.goals_before[1]), 1.5);
         CHECK(first > 0);
         CHECK(second > first + 200);
         CHECK(plan.reference.back().tick > second + 150);
@@ -279,7 +279,7 @@ TEST_CASE("a tour with a goal behind a wall ends before it and is not called sol
 TEST_CASE("the same place twice is held twice") {
     Problem problem = tour(Variant::mp_arm_da);
     problem.goal = place(-4, 2, 2);
-    problem.stops = {place(-4, 2, 1), place(-4, 2, 1.5)};
+    problem.goals_before = {place(-4, 2, 1), place(-4, 2, 1.5)};
     const Solution solution = solve(problem);
     REQUIRE(solution.status == Status::solved);
     CHECK(solution.execution->outcome == Outcome::ok);

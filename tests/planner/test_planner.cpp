@@ -198,15 +198,15 @@ TEST_CASE("obstacles that went, and goals that moved, are planned for") {
 
 TEST_CASE("goals that were visited are not visited again") {
     Problem problem = long_flight();
-    problem.stops.push_back(test::configuration_goal(-1, 2.5));
-    problem.stops.back().hold_s = 1;
+    problem.goals_before.push_back(test::configuration_goal(-1, 2.5));
+    problem.goals_before.back().hold_s = 1;
     Planner planner(problem);
     REQUIRE(planner.solve().status == Status::solved);
     const Plan plan = *planner.plan();
     const std::int64_t hover = plan.reference[hover_ends(planner.model(), plan.reference, goals_of(problem))[0]].tick;
     const Start here = planner.predicted(problem.start, plan, hover + 50);
     const Answer answer = planner.replan(here, hover + 50, {}, iterations(100));
-    CHECK(planner.problem().stops.empty());
+    CHECK(planner.problem().goals_before.empty());
     CHECK(answer.advice != Advice::none);
     CHECK(flown(planner, answer).outcome == Outcome::ok);
 }
@@ -312,5 +312,5 @@ TEST_CASE("limits of replanning have those of a search, and a stop ends it once 
     change.put.push_back(test::box("block", {0.5, 3, 3}, {2.2, 0, 1.5}));
     CHECK(planner.replan(start, 0, change, stopped).advice == Advice::stop);
     CHECK(planner.solve().status == Status::solved);
-    CHECK(planner.model().is_mine(*planner.map(), planner.problem().bounds));
+    CHECK(planner.model().matches(*planner.map(), planner.problem().bounds));
 }

@@ -105,10 +105,10 @@ TEST_CASE("a contact without a place says what is in its way") {
     test::contact(problem.goal).standoff_m = 4.5;
     CHECK_THAT(only_error(problem), Contains("outside the bounds"));
     problem = contact_problem("ceiling", TouchingPart::frame);
-    problem.stops.push_back(tip_goal(0, 3));
+    problem.goals_before.push_back(tip_goal(0, 3));
     CHECK_THAT(only_error(problem), Contains("one of several goals"));
     problem.goal = Goal{};
-    problem.stops.clear();
+    problem.goals_before.clear();
     CHECK_THAT(only_error(problem), Contains("goal.configuration: is free in every coordinate"));
     problem = contact_problem("ceiling", TouchingPart::frame);
     problem.targets = {std::exchange(problem.goal, {})};

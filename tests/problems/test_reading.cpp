@@ -224,26 +224,26 @@ TEST_CASE("goals are read one by one, in turn, or as a choice") {
     const Problem turn = read_with(
         "goal:\n  - configuration: {x_m: 1, tolerance_x_m: 0.2}\n    hold_s: 3\n"
         "  - end_effector: {x_m: 2, z_m: 3, tolerance_z_m: 0.3}\n  - configuration: {z_m: 4}\n    hold_s: 7\n");
-    REQUIRE(turn.stops.size() == 2);
-    CHECK(test::configuration(turn.stops[0]).x_m == 1);
-    CHECK(test::configuration(turn.stops[0]).tolerance_x_m == 0.2);
-    CHECK(turn.stops[0].hold_s == 3);
-    CHECK(test::end_effector(turn.stops[1]).tolerance_z_m == 0.3);
-    CHECK(turn.stops[1].hold_s == 5);
+    REQUIRE(turn.goals_before.size() == 2);
+    CHECK(test::configuration(turn.goals_before[0]).x_m == 1);
+    CHECK(test::configuration(turn.goals_before[0]).tolerance_x_m == 0.2);
+    CHECK(turn.goals_before[0].hold_s == 3);
+    CHECK(test::end_effector(turn.goals_before[1]).tolerance_z_m == 0.3);
+    CHECK(turn.goals_before[1].hold_s == 5);
     CHECK(test::configuration(turn.goal).z_m == 4);
     CHECK(turn.goal.hold_s == 7);
     CHECK(goals_of(turn).size() == 3);
 
     const Problem choice =
         read_with("goal: {any_of: [{configuration: {x_m: 1}}, {configuration: {x_m: 2}, hold_s: 2}]}\n");
-    CHECK(choice.stops.empty());
+    CHECK(choice.goals_before.empty());
     REQUIRE(choice.goal.any_of.size() == 2);
     CHECK(choice.goal.any_of[0].hold_s == 5);
     CHECK(test::configuration(choice.goal.any_of[1]).x_m == 2);
     CHECK(choice.goal.any_of[1].hold_s == 2);
 
     const Problem alone = read_with("goal: [{configuration: {x_m: 1}}]\n");
-    CHECK(alone.stops.empty());
+    CHECK(alone.goals_before.empty());
     CHECK(test::configuration(alone.goal).x_m == 1);
 }
 

@@ -72,7 +72,7 @@ class ProblemMaker {
             Goal other = problem.goal;
             other.hold_s = 1 + uniform();
             if (coin()) {
-                problem.stops = {other, problem.goal};
+                problem.goals_before = {other, problem.goal};
             } else if (coin()) {
                 Goal either;
                 either.any_of = {problem.goal, other};

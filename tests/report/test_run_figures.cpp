@@ -60,7 +60,7 @@ TEST_CASE("goals in turn have their numbers and tolerances in the picture, a sin
     test::end_effector(first).z_m = 3.5;
     test::end_effector(first).tolerance_x_m = 0.3;
     test::end_effector(first).tolerance_z_m = 0.1;
-    tour.problem.stops = {first};
+    tour.problem.goals_before = {first};
     const FieldFigure figure = snapshot_figure(tour, *make_flight_model(record().problem));
     CHECK(figure.points.at(0).labels == std::vector<std::string>{"goal 1", "goal 2"});
     const auto rectangle = region_of(figure);

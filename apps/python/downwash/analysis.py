@@ -33,7 +33,7 @@ def hold(
 
 
 def draw_worlds(problem: Problem, count: int, *, seed: int | None = None) -> Dict[str, npt.NDArray[Any]]:
-    """What the worlds 1 to `count` of the problem's uncertainty have otherwise than believed.
+    """What the worlds 1 to `count` of the problem's uncertainty have otherwise than the nominal one.
 
     seed: of the worlds; default: that of the problem
 

@@ -51,7 +51,7 @@ inline void lower_deck(downwash::Problem& problem, double by_m) {
             std::get<downwash::EndEffectorGoal>(target.kind).z_m -= by_m;
         }
     };
-    std::for_each(problem.stops.begin(), problem.stops.end(), lower);
+    std::for_each(problem.goals_before.begin(), problem.goals_before.end(), lower);
     lower(problem.goal);
     deck.center_world_m[2] -= by_m;
 }

@@ -48,7 +48,7 @@ double rounded(double length_m) {
 /// The way to the first target, with limits for the search.
 Problem first_leg(Problem bridge, bool is_lock_step) {
     bridge.goal = goals_of(bridge).front();
-    bridge.stops.clear();
+    bridge.goals_before.clear();
     bridge.planner.max_iterations.reset();
     bridge.planner.time_limit_s.reset();
     if (is_lock_step) {
