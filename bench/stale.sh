@@ -1,0 +1,101 @@
+#!/usr/bin/env bash
+# Are the pages of bench/results that README.md and docs/ quote older than the sources that they measure? Says so for each
+# page, and fails where bench/results/README.md does not list it under "Older than the sources", or lists one that is not.
+# bench/results/sources.txt says what each page measures. Exits with 77 where the history of the sources is not at hand.
+# Usage: bench/stale.sh [root of the tree]
+set -euo pipefail
+cd -P "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
+results=bench/results
+sources=$results/sources.txt
+
+if [[ $(git rev-parse --is-shallow-repository 2>/dev/null || echo true) == true ]]; then
+    echo "stale.sh: no clone with its whole history, nothing to compare"
+    exit 77
+fi
+
+# words KIND KEY: what stands in sources.txt after them.
+words() {
+    awk -v kind="$1" -v key="$2" '$1 == kind && $2 == key { for (i = 3; i <= NF; ++i) print $i }' "$sources"
+}
+
+# contents COMMIT GROUP: the sources of a group at a commit under their names of today, without pages.
+contents() {
+    local folders
+    mapfile -t folders < <(words group "$2")
+    git ls-tree -r --format='%(objectname) %(path)' "$1" 2>/dev/null |
+        awk -v wanted="${folders[*]}" '
+            FILENAME == "-" {
+                path = $2
+                top = path
+                sub(/\/.*/, "", top)
+                if (top in today) path = today[top] substr(path, length(top) + 1)
+                if (path ~ /\.md$/) next
+                for (i in folder) if (index(path "/", folder[i] "/") == 1) { print path, $1; next }
+                next
+            }
+            FNR == 1 { split(wanted, folder, " ") }
+            $1 == "moved" { today[$2] = $3 }' "$sources" - | LC_ALL=C sort
+}
+
+# is_same FROM TO GROUP
+is_same() {
+    [[ $(contents "$1" "$3" | sha256sum) == $(contents "$2" "$3" | sha256sum) ]]
+}
+
+# is_current COMMIT GROUP: whether the sources have not changed since, but for changes that sources.txt calls the same.
+is_current() {
+    local commit=$1 ranges range from to moved=1
+    mapfile -t ranges < <(awk -v group="$2" '$1 == "same" && $2 == group { print $3 }' "$sources")
+    while [[ $moved == 1 ]]; do
+        if is_same "$commit" HEAD "$2"; then
+            return 0
+        fi
+        moved=0
+        for range in "${ranges[@]}"; do
+            from=${range%..*} to=${range#*..}
+            if [[ $(git rev-parse "$commit") != $(git rev-parse "$to") ]] && ! git merge-base --is-ancestor "$to" "$commit" &&
+                { git merge-base --is-ancestor "$from" "$commit" || is_same "$commit" "$from" "$2"; }; then
+                commit=$to
+                moved=1
+                break
+            fi
+        done
+    done
+    return 1
+}
+
+listed=$(awk '/^## / { inside = $0 == "## Older than the sources" } inside' "$results/README.md" |
+    { grep -oE '\]\([a-z_]+\.md\)' || true; } | tr -d ']()')
+failed=0
+mapfile -t pages < <(git grep -ohE "$results/[a-z_]+\.md" -- README.md docs | sed "s|^$results/||" | LC_ALL=C sort -u)
+for page in "${pages[@]}"; do
+    [[ $page != README.md ]] || continue
+    group=$(awk -v page="$page" '$1 == "page" { for (i = 3; i <= NF; ++i) if ($i == page) print $2 }' "$sources")
+    if [[ -z $group ]]; then
+        echo "$results/$page is quoted, but $sources does not say what it measures"
+        failed=1
+        continue
+    fi
+    commit=$({ grep -oiE 'commit `?[0-9a-f]{7,40}(-dirty)?' "$results/$page" || true; } | head -n 1 | sed 's/.*[ `]//')
+    reason=
+    if [[ -z $commit ]]; then
+        reason="it names no commit"
+    elif [[ $commit == *-dirty ]]; then
+        reason="it was made with changes that were not committed"
+    elif ! git cat-file -e "$commit^{commit}" 2>/dev/null; then
+        reason="its commit $commit is not known here"
+    elif ! is_current "$commit" "$group"; then
+        reason="what it measures (group $group of sources.txt) has changed since commit $commit"
+    fi
+    is_listed=$(grep -cxF "$page" <<<"$listed" || true)
+    if [[ -n $reason && $is_listed == 0 ]]; then
+        echo "$results/$page is stale: $reason. Make it anew, or list it in $results/README.md"
+        failed=1
+    elif [[ -z $reason && $is_listed != 0 ]]; then
+        echo "$results/$page is as new as its sources: take it from the list in $results/README.md"
+        failed=1
+    elif [[ -n $reason ]]; then
+        echo "$results/$page is listed as older than its sources: $reason"
+    fi
+done
+exit "$failed"

@@ -1,0 +1,72 @@
+#!/usr/bin/env bash
+# Does bench/stale.sh notice pages that are older than what they measure? Tries it on a small repository.
+# Usage: check_stale.sh STALE_SH
+set -euo pipefail
+stale=$(realpath "$1")
+command -v git >/dev/null || exit 77
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+export GIT_CONFIG_GLOBAL=/dev/null GIT_CONFIG_NOSYSTEM=1
+git init -q .
+git config user.name test
+git config user.email test@example.org
+mkdir -p bench/results search docs
+cp "$stale" bench/stale.sh
+commit() {
+    git add -A
+    git commit -qm "$1"
+    git rev-parse HEAD
+}
+# expect CODE TEXT: what stale.sh exits with and says.
+expect() {
+    local code=0 said
+    said=$(bench/stale.sh) || code=$?
+    if [[ $code != "$1" || $said != *"$2"* ]]; then
+        printf 'after "%s": expected %s and "%s", found %s:\n%s\n' "$(git log -1 --format=%s)" "$1" "$2" "$code" "$said" >&2
+        exit 1
+    fi
+}
+
+printf 'group all search\npage all fast.md\n' >bench/results/sources.txt
+echo 'It is fast (bench/results/fast.md).' >docs/speed.md
+printf '# Results\n\n## Older than the sources\n\n' >bench/results/README.md
+echo 'int first;' >search/tree.cpp
+measured=$(commit 'sources')
+echo "Commit $measured, fast." >bench/results/fast.md
+commit 'a page' >/dev/null
+expect 0 ''
+echo 'words' >search/README.md
+commit 'words about the sources' >/dev/null
+expect 0 ''
+
+printf 'moved search planner/search\ngroup all planner/search\npage all fast.md\n' >bench/results/sources.txt
+mkdir planner
+git mv search planner/search
+before=$(commit 'a move')
+expect 0 ''
+
+echo 'int second;' >planner/search/tree.cpp
+after=$(commit 'other sources')
+expect 1 'bench/results/fast.md is stale'
+echo "same all $before..$after the same figures" >>bench/results/sources.txt
+expect 0 ''
+echo 'int third;' >planner/search/tree.cpp
+commit 'other sources again' >/dev/null
+expect 1 'bench/results/fast.md is stale'
+echo '- [fast.md](fast.md)' >>bench/results/README.md
+expect 0 'is listed as older'
+echo "Commit $(git rev-parse HEAD), fast." >bench/results/fast.md
+expect 1 'take it from the list'
+
+echo 'It is large (bench/results/large.md).' >>docs/speed.md
+git add -A
+expect 1 'does not say what it measures'
+echo 'page all large.md' >>bench/results/sources.txt
+echo 'Large.' >bench/results/large.md
+git add -A
+expect 1 'names no commit'
+git clone -q --depth 1 "file://$work" shallow
+cd shallow
+expect 77 'whole history'
+echo "stale pages are noticed"
