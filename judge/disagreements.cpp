@@ -130,7 +130,7 @@ std::vector<Disagreement> disagreements_in_plan(const Claims& claims, const Prob
     }
     const Start& start = problem.start;
     list.compare("plan.reference[0]", claims.plan.first(),
-                 start.reference ? configuration_of(*start.reference) : start.configuration());
+                 start.reference ? configuration_of(*start.reference) : start.at);
     check_limits(claims.plan, problem.motion, list);
     check_goals(claims.plan, problem, list);
     return std::move(list.found);

@@ -50,7 +50,7 @@ FlownVehicle::Begin FlownVehicle::begin(const Setting& setting, bool hovers) con
         return begin;
     }
     const World quiet = without_noise(world_);
-    const ReferencePoint here = at_rest(start.configuration());
+    const ReferencePoint here = at_rest(start.at);
     Loop hover(setting.law, nominal_surroundings_, plant_, quiet, setting.problem.robot, begin.state, begin.memory);
     const std::int64_t ticks = std::llround(hover_before_start_s / setting.law.tick_s());
     for (std::int64_t tick = 0; tick < ticks; ++tick) {

@@ -13,7 +13,7 @@ struct SimulatedVehicle::Parts {
 
     Parts(const Problem& problem, const FlightConditions& conditions)
         : setting(problem), vehicle(setting, conditions), goes_on(vehicle.has_begun()) {
-        goes_on = vehicle.umpire().sees(vehicle.loop(), at_rest(problem.start.configuration())) && goes_on;
+        goes_on = vehicle.umpire().sees(vehicle.loop(), at_rest(problem.start.at)) && goes_on;
     }
 };
 

@@ -84,7 +84,7 @@ void Braking::fly_around(const Bounds& places) {
 
 /// Those between the vehicle and the rests, and around them.
 Bounds Braking::places_on(std::span<const Try> tries, const Start& from) const {
-    Bounds places{from.x_m, from.x_m, from.z_m, from.z_m};
+    Bounds places{from.at[plane::x], from.at[plane::x], from.at[plane::z], from.at[plane::z]};
     for (const Try& each : tries) {
         const Configuration rest = each.plan.last();
         places = {std::min(places.x_low_m, rest[plane::x]), std::max(places.x_high_m, rest[plane::x]),

@@ -101,7 +101,7 @@ LegTable::LegTable(const Problem& problem, const PlannerModel& model, const Solv
       options_(options),
       start_(Course::from_start(problem, *model.flight)),
       estimates_(targets_of_places(problem)) {
-    const Configuration start = problem.start.configuration();
+    const Configuration start = problem.start.at;
     for (auto& [visit, goal] : goals_at_places(problem)) {
         bounds_.push_back(std::make_unique<Bounds>(problem, goal, *model.flight));
         places_.push_back({visit, std::move(goal), bounds_.back()->within_goal(start), std::nullopt});
@@ -118,7 +118,7 @@ LegTable::~LegTable() = default;
 
 /// Sets the lower bounds of the legs from a place that are not flown.
 void LegTable::bound_legs_from(std::size_t from) {
-    const Configuration at = from == estimates_.outside() ? problem_.start.configuration() : places_[from].at;
+    const Configuration at = from == estimates_.outside() ? problem_.start.at : places_[from].at;
     for (std::size_t to = 0; to <= estimates_.outside(); ++to) {
         if (!is_leg(from, to)) {
             estimates_.leg(from, to) = to < estimates_.outside() ? LegCost{} : LegCost{0, 0};

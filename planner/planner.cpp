@@ -54,13 +54,11 @@ void throw_if_out_of_range(const ReplanOptions& options) {
 }
 
 bool is_finite(const Start& start) {
-    double sum = start.x_m + start.z_m + start.arm_rad + start.pitch_rad + start.vx_m_s + start.vz_m_s +
-                 start.pitch_rate_rad_s + start.arm_rate_rad_s;
-    if (start.reference) {
-        for (std::size_t axis = 0; axis < max_axes; ++axis) {
-            sum +=
-                start.reference->position[axis] + start.reference->velocity[axis] + start.reference->acceleration[axis];
-        }
+    const ReferencePoint reference = start.reference.value_or(ReferencePoint{});
+    double sum = start.pitch_rad + start.pitch_rate_rad_s;
+    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+        sum += start.at[axis] + start.velocity[axis];
+        sum += reference.position[axis] + reference.velocity[axis] + reference.acceleration[axis];
     }
     return std::isfinite(sum);
 }

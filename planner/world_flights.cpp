@@ -73,7 +73,7 @@ std::vector<std::optional<FlightState>> WorldFlights::starts_in(std::span<const 
     const FlightState nominal = start_state(*model_, problem_.start);
     std::vector<std::optional<FlightState>> starts(worlds.size(), nominal);
     if (is_at_rest(problem_.start)) {
-        const ReferencePoint here = at_rest(problem_.start.configuration());
+        const ReferencePoint here = at_rest(problem_.start.at);
         const double tick_s = model_->tick().tick_s;
         const ReferenceSegment hover(here, here, std::llround(settling_before_start_s / tick_s), tick_s);
         std::vector<FlownWorld> quiet;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -40,32 +41,30 @@ inline constexpr std::array all_variants{Variant::mp_arm, Variant::mp_arm_da, Va
 /// Where the flight begins. A vehicle in the middle of a flight has more to it than where it is and how it moves: the
 /// reference that it follows, what its rotors give and what its controller remembers.
 struct Start {
-    double x_m = 0, z_m = 0, arm_rad = 0;
+    Configuration at;  ///< where vehicle and arm are, the pitch left out
     double pitch_rad = 0;
-    double vx_m_s = 0, vz_m_s = 0, pitch_rate_rad_s = 0, arm_rate_rad_s = 0;
-    std::optional<ReferencePoint>
-        reference;  ///< reference with which the plan begins; empty: where the vehicle is, as it moves
+    double velocity[max_axes]{};  ///< velocity along each axis [m/s or rad/s]
+    double pitch_rate_rad_s = 0;
+    /// Reference with which the plan begins; empty: where the vehicle is, as it moves.
+    std::optional<ReferencePoint> reference;
     /// Free-air thrust that the rotors' lag has reached [N], of each rotor; empty: they carry the weight.
     std::vector<double> rotor_thrust_n;
     /// Numbers of the control law's memory, in the order of its Memory; empty: that of a vehicle that has hovered long.
     std::vector<double> controller_memory;
 
-    /// Where vehicle and arm are, the pitch left out.
-    [[nodiscard]] Configuration configuration() const noexcept { return {x_m, z_m, arm_rad}; }
+    [[nodiscard]] PlanarPose pose() const noexcept { return {at[plane::x], at[plane::z], pitch_rad, at[plane::arm]}; }
 
     /// A vehicle that rests at a configuration.
-    [[nodiscard]] static Start resting_at(const Configuration& at) {
+    [[nodiscard]] static Start resting_at(const Configuration& configuration) {
         Start start;
-        start.x_m = at[plane::x];
-        start.z_m = at[plane::z];
-        start.arm_rad = at[plane::arm];
+        start.at = configuration;
         return start;
     }
 };
 
 /// Whether nothing moves at the start, and a vehicle may have hovered there for long: none that is in a flight already.
 [[nodiscard]] inline bool is_at_rest(const Start& start) noexcept {
-    return start.vx_m_s == 0 && start.vz_m_s == 0 && start.pitch_rate_rad_s == 0 && start.arm_rate_rad_s == 0 &&
+    return std::ranges::all_of(start.velocity, [](double rate) { return rate == 0; }) && start.pitch_rate_rad_s == 0 &&
            !start.reference && start.rotor_thrust_n.empty() && start.controller_memory.empty();
 }
 

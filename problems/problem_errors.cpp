@@ -182,8 +182,8 @@ std::vector<KeyError> start_outside_bounds(const Problem& p) {
                                        to_text(high)});
         }
     };
-    check("start.x_m", p.start.x_m, p.bounds.x_low_m, p.bounds.x_high_m);
-    check("start.z_m", p.start.z_m, p.bounds.z_low_m, p.bounds.z_high_m);
+    check("start.x_m", p.start.at[plane::x], p.bounds.x_low_m, p.bounds.x_high_m);
+    check("start.z_m", p.start.at[plane::z], p.bounds.z_low_m, p.bounds.z_high_m);
     return errors;
 }
 
@@ -197,13 +197,13 @@ std::vector<KeyError> start_too_fast(const Problem& p) {
     if (p.start.reference) {
         return errors;
     }
-    const double speed = std::hypot(p.start.vx_m_s, p.start.vz_m_s);
+    const double speed = std::hypot(p.start.velocity[plane::x], p.start.velocity[plane::z]);
     if (speed > p.motion.max_speed_m_s) {
-        errors.push_back({p.start.vx_m_s == 0 ? "start.vz_m_s" : "start.vx_m_s",
+        errors.push_back({p.start.velocity[plane::x] == 0 ? "start.vz_m_s" : "start.vx_m_s",
                           "makes a start speed of " + rounded(speed) + " m/s: expected at most motion.max_speed_m_s, " +
                               to_text(p.motion.max_speed_m_s)});
     }
-    if (std::abs(p.start.arm_rate_rad_s) > p.motion.max_arm_rate_rad_s) {
+    if (std::abs(p.start.velocity[plane::arm]) > p.motion.max_arm_rate_rad_s) {
         errors.push_back({"start.arm_rate_deg_s", "is faster than motion.max_arm_rate_deg_s: expected at most " +
                                                       rounded(p.motion.max_arm_rate_rad_s * degrees_per_radian) +
                                                       " in size"});
@@ -217,7 +217,7 @@ bool is_beyond_limits(const ArmParameters& arm, double angle_rad, double toleran
 }
 
 std::vector<KeyError> start_beyond_arm_limits(const Problem& p) {
-    if (!is_beyond_limits(p.robot.arm, p.start.arm_rad)) {
+    if (!is_beyond_limits(p.robot.arm, p.start.at[plane::arm])) {
         return {};
     }
     return {{"start.arm_deg", "is beyond the arm's limits: expected " + arm_limits_text(p.robot.arm)}};
@@ -225,7 +225,7 @@ std::vector<KeyError> start_beyond_arm_limits(const Problem& p) {
 
 std::vector<KeyError> start_in_collision(const ProblemCheck& check) {
     const Problem& p = check.problem();
-    const PlanarPose pose{p.start.x_m, p.start.z_m, p.start.pitch_rad, p.start.arm_rad};
+    const PlanarPose pose = p.start.pose();
     const CollisionChecker& checker = check.collisions();
     if (!checker.is_nearer_than(pose, p.planner.safety_margin_m)) {
         return {};
@@ -246,8 +246,8 @@ std::vector<KeyError> start_in_collision(const ProblemCheck& check) {
 Vector3 hub_m(const Problem& p, const Vector3& in_body_m) {
     const double c = std::cos(p.start.pitch_rad);
     const double s = std::sin(p.start.pitch_rad);
-    return p.plane.to_world(p.start.x_m + in_body_m[0] * c + in_body_m[2] * s, in_body_m[1],
-                            p.start.z_m - in_body_m[0] * s + in_body_m[2] * c);
+    return p.plane.to_world(p.start.at[plane::x] + in_body_m[0] * c + in_body_m[2] * s, in_body_m[1],
+                            p.start.at[plane::z] - in_body_m[0] * s + in_body_m[2] * c);
 }
 
 std::vector<KeyError> start_not_flyable(const ProblemCheck& check) {

@@ -113,7 +113,7 @@ void add_start_reference(Rows& rows) {
     struct Coordinate {
         std::string_view path, description;
         double most;
-        double (ReferencePoint::*part)[3];
+        double (ReferencePoint::*part)[max_axes];
         int axis;
     };
     static constexpr Coordinate coordinates[] = {
@@ -139,16 +139,25 @@ void add_start_reference(Rows& rows) {
 
 void add_start(Rows& rows) {
     const auto of = [](auto member) { return in(&Problem::start, member); };
-    append(rows,
-           {group("start", "where the flight begins").is_required(),
-            position("start.x_m", "along the plane", of(&Start::x_m)).is_required(),
-            position("start.z_m", "upwards", of(&Start::z_m)).is_required(),
-            angle("start.arm_deg", "arm from the vehicle's nose, down is 90", 3600, of(&Start::arm_rad)).is_required(),
-            angle("start.pitch_deg", "pitch, nose down", 89, of(&Start::pitch_rad)),
-            angle("start.vx_m_s", "speed along the plane", 100, of(&Start::vx_m_s)),
-            angle("start.vz_m_s", "speed upwards", 100, of(&Start::vz_m_s)),
-            angle("start.pitch_rate_deg_s", "pitch rate, nose down", 1800, of(&Start::pitch_rate_rad_s)),
-            angle("start.arm_rate_deg_s", "rate of the arm's joint", 1800, of(&Start::arm_rate_rad_s))});
+    const auto at = [](std::size_t axis) {
+        return [axis](auto& p) -> auto& {
+            return p.start.at.coordinate[axis];
+        };
+    };
+    const auto rate = [](std::size_t axis) {
+        return [axis](auto& p) -> auto& {
+            return p.start.velocity[axis];
+        };
+    };
+    append(rows, {group("start", "where the flight begins").is_required(),
+                  position("start.x_m", "along the plane", at(plane::x)).is_required(),
+                  position("start.z_m", "upwards", at(plane::z)).is_required(),
+                  angle("start.arm_deg", "arm from the vehicle's nose, down is 90", 3600, at(plane::arm)).is_required(),
+                  angle("start.pitch_deg", "pitch, nose down", 89, of(&Start::pitch_rad)),
+                  angle("start.vx_m_s", "speed along the plane", 100, rate(plane::x)),
+                  angle("start.vz_m_s", "speed upwards", 100, rate(plane::z)),
+                  angle("start.pitch_rate_deg_s", "pitch rate, nose down", 1800, of(&Start::pitch_rate_rad_s)),
+                  angle("start.arm_rate_deg_s", "rate of the arm's joint", 1800, rate(plane::arm))});
     const auto numbers = [&](std::string_view path, std::string_view description, std::vector<double> Start::*member) {
         rows.push_back(parameters::numbers<Problem>(
             path, description, {}, [member](const Problem& p, std::size_t) { return Value(p.start.*member); },

@@ -180,10 +180,9 @@ std::vector<KeyError> goal_at_start(const Problem& problem) {
     if (!problem.targets.empty()) {
         return {};
     }
-    const Start& start = problem.start;
     const PlantModel plant = make_plant_model(problem.robot.multirotor, problem.robot.arm, problem.robot.rotors);
     const GoalError error = goal_error(problem.goals_before.empty() ? problem.goal : problem.goals_before.front(),
-                                       plant, {start.x_m, start.z_m, start.pitch_rad, start.arm_rad});
+                                       plant, problem.start.pose());
     if (!is_met(error)) {
         return {};
     }

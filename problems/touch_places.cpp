@@ -213,7 +213,7 @@ class TouchSearch {
     /// Whether the level vehicle can wait and touch there.
     bool is_usable(const Goal& goal, const Approach& way) {
         const PlantModel plant = make_plant_model(problem_.robot.multirotor, problem_.robot.arm, problem_.robot.rotors);
-        Configuration waiting = problem_.start.configuration();
+        Configuration waiting = problem_.start.at;
         if (part_of(goal) == GoalPart::end_effector) {
             waiting[plane::arm] = way.arm_rad;
         }

@@ -42,7 +42,7 @@ void compare_waypoints(JsonReader& reader, const Node& list, const std::vector<C
 }
 
 void check_start(JsonReader& reader, const Node& reference, const Plan& plan, const Start& start) {
-    const Configuration begin = start.reference ? configuration_of(*start.reference) : start.configuration();
+    const Configuration begin = start.reference ? configuration_of(*start.reference) : start.at;
     if (!is_at(begin, plan.first())) {
         const auto place = [&plan](const Configuration& c) {
             std::string text;

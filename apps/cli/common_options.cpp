@@ -127,7 +127,7 @@ std::string run_folder(const std::string& given) {
 
 double arm_option(const std::optional<double>& arm_deg, const Problem& problem) {
     if (!arm_deg) {
-        return problem.start.arm_rad;
+        return problem.start.at[plane::arm];
     }
     constexpr double max_deg = 3600;
     if (!(std::abs(*arm_deg) <= max_deg)) {

@@ -82,7 +82,7 @@ void require_finite(const Points& points, std::size_t count, double arm_rad) {
 py::tuple hold(const CoreProblem& of, const Points& points, const std::optional<double>& arm_deg, int threads) {
     const FlightModel& model = *of.model();
     const std::size_t count = count_points(points, false);
-    const double arm_rad = arm_deg ? *arm_deg / degrees_per_radian : of.problem().start.arm_rad;
+    const double arm_rad = arm_deg ? *arm_deg / degrees_per_radian : of.problem().start.at[plane::arm];
     require_finite(points, count, arm_rad);
     const double* at = points.data();
     const std::vector<Answer> answers = interruptible(py::none(), [&](Attendance& attendance) {

@@ -41,7 +41,7 @@ using CoreStart =
 
 Start start_of(const CoreStart& given) {
     const auto& [s, reference, rotor_thrust_n, memory] = given;
-    Start start{s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], {}, rotor_thrust_n, memory};
+    Start start{{s[0], s[1], s[2]}, s[3], {s[4], s[5], s[7]}, s[6], {}, rotor_thrust_n, memory};
     if (reference) {
         start.reference = reference_point(reference->data());
     }
@@ -57,7 +57,8 @@ ReferenceNumbers numbers_of(const ReferencePoint& point) {
 }
 
 CoreStart numbers_of(const Start& s) {
-    return {{s.x_m, s.z_m, s.arm_rad, s.pitch_rad, s.vx_m_s, s.vz_m_s, s.pitch_rate_rad_s, s.arm_rate_rad_s},
+    return {{s.at[plane::x], s.at[plane::z], s.at[plane::arm], s.pitch_rad, s.velocity[plane::x], s.velocity[plane::z],
+             s.pitch_rate_rad_s, s.velocity[plane::arm]},
             s.reference ? std::optional(numbers_of(*s.reference)) : std::nullopt,
             s.rotor_thrust_n,
             s.controller_memory};

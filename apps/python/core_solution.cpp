@@ -89,7 +89,7 @@ Problem as_visited(const Problem& problem, const Solution& solution) {
                               "the solution");
         }
         const Start& start = problem.start;
-        const Configuration begin = start.reference ? configuration_of(*start.reference) : start.configuration();
+        const Configuration begin = start.reference ? configuration_of(*start.reference) : start.at;
         const Configuration first = solution.plan->first();
         if (!std::ranges::equal(begin.coordinate, first.coordinate, is_near)) {
             throw_input_error("is a plan that begins elsewhere than the problem", "the solution");

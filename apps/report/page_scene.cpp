@@ -281,10 +281,10 @@ void add_problem(Json& page, const Problem& problem, const std::optional<VisitOr
     page["description"] = problem.description;
     page["scene"] = scene_json(problem, model.effect(0).scene());
     page["robot"] = robot_json(problem.robot);
-    page["start"] = {{"x_m", problem.start.x_m},
-                     {"z_m", problem.start.z_m},
+    page["start"] = {{"x_m", problem.start.at[plane::x]},
+                     {"z_m", problem.start.at[plane::z]},
                      {"pitch_rad", problem.start.pitch_rad},
-                     {"arm_rad", problem.start.arm_rad}};
+                     {"arm_rad", problem.start.at[plane::arm]}};
     page["goals"] = goals_json(problem, order);
     page["goal_order"] = goal_order(problem, order);
     page["limits"] = {

@@ -295,7 +295,7 @@ void run(const Options& options, const Problem& problem, std::uint32_t seed) {
     const oc::SpaceInformationPtr information = make_information(problem, options);
     const auto definition = std::make_shared<ob::ProblemDefinition>(information);
     ob::ScopedState<> start(information);
-    write(start.get(), problem.start.x_m, problem.start.z_m);
+    write(start.get(), problem.start.at[plane::x], problem.start.at[plane::z]);
     definition->addStartState(start);
     Progress progress(options.goal_error);
     definition->setGoal(std::make_shared<RestGoal>(information, std::get<ConfigurationGoal>(problem.goal.kind),

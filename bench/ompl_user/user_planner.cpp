@@ -223,7 +223,8 @@ struct UserPlanner::Impl {
         information->setup();
         goal = std::make_shared<TipGoal>(information, problem, odes.size());
         for (const ClosedLoopOde& ode : odes) {
-            std::vector<double> at = Ode::resting_at(problem.start.x_m, problem.start.z_m, problem.start.arm_rad);
+            std::vector<double> at =
+                Ode::resting_at(problem.start.at[plane::x], problem.start.at[plane::z], problem.start.at[plane::arm]);
             if (!worlds.empty()) {
                 at = ode.hovered(std::move(at), settling_before_start_s);
             }

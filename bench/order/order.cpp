@@ -42,14 +42,14 @@ Problem random_scene(const Options& options, unsigned seed) {
     problem.bounds = {-12, 12, 0.8, 11.5};
     problem.obstacles.clear();
     problem.start = {};
-    problem.start.x_m = -10;
-    problem.start.z_m = 3;
-    problem.start.arm_rad = 1.5707963267948966;
+    problem.start.at[plane::x] = -10;
+    problem.start.at[plane::z] = 3;
+    problem.start.at[plane::arm] = 1.5707963267948966;
     constexpr int blocks = 6;
     while (problem.obstacles.size() < blocks) {
         const double x_m = random.uniform(-9, 9), z_m = random.uniform(2, 10);
         const double width_m = random.uniform(0.5, 2.5), height_m = random.uniform(0.5, 2.5);
-        if (std::abs(x_m - problem.start.x_m) > 3 || std::abs(z_m - problem.start.z_m) > 2.5) {
+        if (std::abs(x_m - problem.start.at[plane::x]) > 3 || std::abs(z_m - problem.start.at[plane::z]) > 2.5) {
             problem.obstacles.push_back(
                 {fmt::format("block_{}", problem.obstacles.size()), Box{{width_m, 6, height_m}}, {x_m, 0, z_m}, {}});
         }

@@ -164,7 +164,7 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
     const double step_m = std::min(max_unseen_motion_m(problem.planner.safety_margin_m), 0.1);
     const auto information = make_space_information(space, random, step_m, counts);
     const FreeAirCost free_air_cost(task);
-    const Configuration start = problem.start.configuration();
+    const Configuration start = problem.start.at;
 
     const auto definition = std::make_shared<ob::ProblemDefinition>(information);
     ob::ScopedState<> start_state(information);

@@ -9,7 +9,7 @@ FlightPoint start_point(const SearchTask& task) {
     FlightPoint point;
     point.vehicle = task.start;
     point.reference = reference_at(task.problem.start);
-    point.rest = task.problem.start.configuration();
+    point.rest = task.problem.start.at;
     return point;
 }
 

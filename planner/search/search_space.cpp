@@ -13,10 +13,8 @@ ReferencePoint reference_at(const Start& start) noexcept {
     if (start.reference) {
         return *start.reference;
     }
-    ReferencePoint point = at_rest(start.configuration());
-    point.velocity[plane::x] = start.vx_m_s;
-    point.velocity[plane::z] = start.vz_m_s;
-    point.velocity[plane::arm] = start.arm_rate_rad_s;
+    ReferencePoint point = at_rest(start.at);
+    std::ranges::copy(start.velocity, point.velocity);
     return point;
 }
 

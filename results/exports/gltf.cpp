@@ -183,7 +183,8 @@ Pose pose_of(const PlaneOfMotion& plane, double x_m, double z_m, double pitch_ra
 Pose first_pose(const RunRecord& run) {
     if (run.flight.rows() == 0) {
         const Start& start = run.problem.start;
-        return pose_of(run.problem.plane, start.x_m, start.z_m, start.pitch_rad, start.arm_rad);
+        return pose_of(run.problem.plane, start.at[plane::x], start.at[plane::z], start.pitch_rad,
+                       start.at[plane::arm]);
     }
     const auto first = [&run](std::string_view name) { return run.flight.find(name)->front(); };
     return pose_of(run.problem.plane, first("x_m"), first("z_m"), first("pitch_rad"), first("arm_rad"));

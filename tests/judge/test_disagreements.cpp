@@ -77,7 +77,7 @@ TEST_CASE("A plan that contradicts itself or its problem is found out") {
         CHECK(bad.in_plan() == Names{"plan.waypoints[1].x_m"});
     }
     SECTION("by a start that is not the problem's") {
-        bad.problem.start.arm_rad = 1.5;
+        bad.problem.start.at[plane::arm] = 1.5;
         CHECK(bad.in_plan() == Names{"plan.reference[0].arm_rad"});
     }
     SECTION("by speed and acceleration beyond the limits") {
@@ -154,7 +154,7 @@ TEST_CASE("Every objective is derived anew") {
 
 TEST_CASE("A plan begins with the reference that the vehicle follows, wherever the vehicle is") {
     Case good;
-    good.problem.start.x_m += 0.03;
+    good.problem.start.at[plane::x] += 0.03;
     CHECK(good.in_plan() == Names{"plan.reference[0].x_m"});
     good.problem.start.reference = good.claims.plan.reference.front().point;
     CHECK(good.in_plan().empty());

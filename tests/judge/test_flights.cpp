@@ -84,13 +84,13 @@ TEST_CASE("The judge flies on from the middle of a flight as the planner does, w
                            problem.robot.controller.law);
             }
             const auto model = make_flight_model(problem);
-            ReferencePoint there = at_rest(problem.start.configuration());
+            ReferencePoint there = at_rest(problem.start.at);
             there.position[0] += 2.5;
             there.velocity[0] = 0.4;
             ReferencePoint end = at_rest(configuration_of(there));
             end.position[0] += 1;
             end.position[2] -= 0.3;
-            const Plan whole{{{0, at_rest(problem.start.configuration())}, {600, there}, {1000, end}}, 0.01};
+            const Plan whole{{{0, at_rest(problem.start.at)}, {600, there}, {1000, end}}, 0.01};
             FlightState vehicle = start_state(*model, problem.start);
             const auto map = model->make_map(problem.bounds);
             REQUIRE(fly_along(*model, map.get(), whole, 600, vehicle));
@@ -181,7 +181,7 @@ TEST_CASE("A vehicle that starts in motion meets gusts from the first tick on") 
     Problem problem = shipped("bridge_inspection");
     const Plan plan = plan_of(problem, 100);
     make_real(problem.robot);
-    problem.start.vx_m_s = 0.3;
+    problem.start.velocity[plane::x] = 0.3;
     problem.uncertainty.emplace();
     const judge::PlanJudge judge(problem);
     for (std::uint64_t index = 1; index < 4; ++index) {
@@ -277,8 +277,8 @@ TEST_CASE("Other control laws fly as the planner says, with an observer, with a 
 TEST_CASE("A start in motion means the same to a law that observes") {
     Problem problem = shipped("bridge_inspection");
     const Plan plan = plan_of(problem, 100);
-    problem.start.vx_m_s = 0.3;
-    problem.start.arm_rate_rad_s = 0.2;
+    problem.start.velocity[plane::x] = 0.3;
+    problem.start.velocity[plane::arm] = 0.2;
     for (const bool is_cascaded : {false, true}) {
         CAPTURE(is_cascaded);
         if (is_cascaded) {

@@ -49,7 +49,7 @@ TEST_CASE("our planner runs where OMPL's planners over controls do, and its path
     CHECK(f.path().check());  // every control, propagated again, leads to the next state
     const std::optional<Plan> plan = f.flights.plan_of(f.path());
     REQUIRE(plan);
-    CHECK(plan->first() == f.flights.problem().start.configuration());
+    CHECK(plan->first() == f.flights.problem().start.at);
     CHECK(f.executed(*plan).outcome == Outcome::ok);
 }
 
@@ -94,7 +94,7 @@ TEST_CASE("our planner has the cost there that solve() reports with the same ite
 
 TEST_CASE("a problem that cannot be planned leads to its errors") {
     Problem problem = test::ceiling_problem();
-    problem.start.z_m = -100;
+    problem.start.at[plane::z] = -100;
     CHECK_THROWS_AS(FlightSetup(problem), InputError);
     problem = test::ceiling_problem();
     problem.goals_before.push_back(problem.goal);

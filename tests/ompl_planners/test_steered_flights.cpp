@@ -87,9 +87,9 @@ TEST_CASE("a moment beyond the longest plan is rejected") {
 
 TEST_CASE("a flight closes from nearby, at rest within the goal, hold included") {
     Problem problem = test::ceiling_problem();
-    problem.start.x_m = near_goal[plane::x];
-    problem.start.z_m = near_goal[plane::z];
-    problem.start.arm_rad = near_goal[plane::arm];
+    problem.start.at[plane::x] = near_goal[plane::x];
+    problem.start.at[plane::z] = near_goal[plane::z];
+    problem.start.at[plane::arm] = near_goal[plane::arm];
     const Fixture f(problem);
     const double upwards[3] = {0.2, 0.05, 0};
     const std::vector<FlightPoint> moments{f.steered.start(), f.steered.stepped(f.steered.start(), upwards)};

@@ -60,7 +60,7 @@ TEST_CASE("every algorithm solves an easy problem from start to goal, twice with
         CHECK(a.cost > 0);
         CHECK(a.planning.iterations <= *problem.planner.max_iterations);
         CHECK(a.plan->reference.front().tick == 0);
-        CHECK(a.plan->first() == problem.start.configuration());
+        CHECK(a.plan->first() == problem.start.at);
         CHECK(test::tip_error_m(problem, a.plan->last()) <= test::end_effector(problem.goal).tolerance_m);
         if (variant == Variant::mp_arm_ada) {
             CHECK(a.execution->outcome == Outcome::ok);
@@ -83,8 +83,8 @@ TEST_CASE("every algorithm's tree hangs together, from the start on") {
         const bool grows_two = algorithm.name == "rrt-connect";
         CHECK(roots <= (grows_two ? static_cast<std::ptrdiff_t>(solution.tree.size()) - 1 : 1));
         CHECK(std::any_of(solution.tree.begin(), solution.tree.end(), [&](const TreeNode& node) {
-            return is_root(node) && node.at[plane::x] == Approx(problem.start.x_m) &&
-                   node.at[plane::z] == Approx(problem.start.z_m);
+            return is_root(node) && node.at[plane::x] == Approx(problem.start.at[plane::x]) &&
+                   node.at[plane::z] == Approx(problem.start.at[plane::z]);
         }));
         for (const TreeNode& node : solution.tree) {
             int parent = node.parent;
@@ -232,9 +232,9 @@ TEST_CASE("a start that already meets the goal needs no search, whatever plans")
     for (const char* algorithm : {"rrt-star", "rrt", "sst", "kpiece1", "est"}) {
         CAPTURE(algorithm);
         Problem problem = with(Variant::mp_arm_ada, algorithm);
-        problem.start.x_m = 3 - 0.6;
-        problem.start.z_m = 4.8 - 1.2 * 0.8660254037844386;
-        problem.start.arm_rad = -1.0471975511965976;
+        problem.start.at[plane::x] = 3 - 0.6;
+        problem.start.at[plane::z] = 4.8 - 1.2 * 0.8660254037844386;
+        problem.start.at[plane::arm] = -1.0471975511965976;
         problem.planner.max_iterations = 1;
         const Solution solution = solve(problem);
         REQUIRE(solution.status == Status::solved);
@@ -251,8 +251,8 @@ TEST_CASE("planners over controls start in motion, and reject flights of absurd 
     for (const char* algorithm : planners_over_controls) {
         CAPTURE(algorithm);
         Problem problem = with(Variant::mp_arm_da, algorithm);
-        problem.start.vx_m_s = 0.5;
-        problem.start.x_m = problem.bounds.x_high_m - 0.1;  // it cannot but overshoot the bound
+        problem.start.velocity[plane::x] = 0.5;
+        problem.start.at[plane::x] = problem.bounds.x_high_m - 0.1;  // it cannot but overshoot the bound
         Problem slow = with(Variant::mp_arm_da, algorithm);
         slow.motion.max_speed_m_s = 1e-6;
         for (Problem* impossible : {&problem, &slow}) {

@@ -16,7 +16,7 @@ namespace {
 /// A flight of 7 m between ground and ceiling to a place in the middle of the air.
 Problem long_flight() {
     Problem problem = test::with_place(4, 2.5);
-    problem.start.z_m = 2.5;
+    problem.start.at[plane::z] = 2.5;
     problem.planner.max_iterations = 600;
     return problem;
 }

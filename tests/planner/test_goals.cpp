@@ -83,7 +83,7 @@ struct ScriptedTour {
             result.record.iterations = outcome == PartOutcome::too_late   ? *part->problem.planner.max_iterations
                                        : outcome == PartOutcome::hopeless ? 0
                                                                           : 10;
-            const Configuration start = part->problem.start.configuration();
+            const Configuration start = part->problem.start.at;
             result.found.plan =
                 Plan{{{0, at_rest(start)}, {500, at_rest({start[plane::x] + 1, 2, 0})}}, model.flight->tick().tick_s};
             result.found.cost = 1;

@@ -21,7 +21,7 @@ namespace {
 Problem long_flight() {
     Problem problem = test::with_place(4, 2.5);
     problem.bounds = {-6, 6, 0.5, 5};
-    problem.start.z_m = 2.5;
+    problem.start.at[plane::z] = 2.5;
     problem.planner.max_iterations = 300;
     return problem;
 }
@@ -131,7 +131,7 @@ TEST_CASE("where nothing but a stop is safe it stops, and where nothing is it sa
     std::int64_t tick = 0;
     const Start here = midway(planner, tick);
     SceneChange change;  // a wall from the ground to the ceiling
-    change.put.push_back(test::box("wall", {0.4, 6, 4.9}, {here.x_m + room_m + 0.2, 0, 2.5}));
+    change.put.push_back(test::box("wall", {0.4, 6, 4.9}, {here.at[plane::x] + room_m + 0.2, 0, 2.5}));
     const Answer answer = planner.replan(here, tick, change, iterations(100));
     Goal anywhere = test::configuration_goal(answer.plan.last()[plane::x], answer.plan.last()[plane::z]);
     test::configuration(anywhere).tolerance_m = 1;
@@ -168,7 +168,7 @@ TEST_CASE("a change that is wrong changes nothing") {
     misfit.controller_memory.pop_back();
     CHECK_THROWS_AS(planner.replan(misfit, tick, {}), InputError);
     Start unknown = here;
-    unknown.vx_m_s = std::numeric_limits<double>::quiet_NaN();
+    unknown.velocity[plane::x] = std::numeric_limits<double>::quiet_NaN();
     CHECK_THROWS_AS(planner.replan(unknown, tick, {}), InputError);
     CHECK(test::same_bytes(*planner.plan(), plan));
     // However fast the vehicle is said to be, there is an answer.

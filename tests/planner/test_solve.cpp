@@ -289,9 +289,9 @@ TEST_CASE("without surface effects the aware planner is the dynamics-aware one")
 
 TEST_CASE("a flight may begin in motion") {
     Problem problem = with(Variant::mp_arm_ada);
-    problem.start.vx_m_s = 0.5;
-    problem.start.vz_m_s = 0.1;
-    problem.start.arm_rate_rad_s = 0.2;
+    problem.start.velocity[plane::x] = 0.5;
+    problem.start.velocity[plane::z] = 0.1;
+    problem.start.velocity[plane::arm] = 0.2;
     const Solution solution = solve(problem);
     REQUIRE(solution.status == Status::solved);
     CHECK(solution.plan->reference.front().point.velocity[0] == 0.5);
@@ -323,7 +323,7 @@ TEST_CASE("a robot with rotor lag is planned for and flown") {
 
 TEST_CASE("a problem that cannot be planned leads to every error") {
     Problem problem = test::ceiling_problem();
-    problem.start.z_m = 5.4;
+    problem.start.at[plane::z] = 5.4;
     problem.robot.rotors.max_thrust_n = 5;
     CHECK(test::errors_of([&] { return solve(problem); }).size() >= 2);
 }
@@ -340,14 +340,14 @@ TEST_CASE("rejections are counted by cause") {
         {"tracking", [](Problem& p) { test::gains_of(p.robot).max_tilt_rad = 0.01; }},
         {"bounds",
          [](Problem& p) {
-             p.start.x_m = p.bounds.x_low_m + 0.3;
-             p.start.vx_m_s = -0.9;  // it cannot but overshoot the bound
+             p.start.at[plane::x] = p.bounds.x_low_m + 0.3;
+             p.start.velocity[plane::x] = -0.9;  // it cannot but overshoot the bound
          }},
         {"arm_limits",
          [](Problem& p) {
              test::limit_arm(p.robot, -3, test::quarter_turn + 0.05);
-             p.start.arm_rad = test::quarter_turn;
-             p.start.arm_rate_rad_s = 0.7;  // it cannot but overshoot the limit
+             p.start.at[plane::arm] = test::quarter_turn;
+             p.start.velocity[plane::arm] = 0.7;  // it cannot but overshoot the limit
          }},
         {"goal_missed",
          [](Problem& p) {
@@ -462,7 +462,7 @@ TEST_CASE("where a surface saves energy the aware planner flies and holds along 
 
 TEST_CASE("a search whose start meets the goal goes on without a plan to refine") {
     Problem problem = with(Variant::mp_arm_ada);
-    problem.goal = test::configuration_goal(problem.start.x_m, problem.start.z_m);
+    problem.goal = test::configuration_goal(problem.start.at[plane::x], problem.start.at[plane::z]);
     problem.goal.hold_s = 1;
     problem.planner.max_iterations = 1500;  // enough for every chance of one in twenty to come
     const Solution solution = solve(problem);

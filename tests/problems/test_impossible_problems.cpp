@@ -76,7 +76,7 @@ TEST_CASE("an impossible problem is an error where it is posed") {
 TEST_CASE("a start that only rounding tells from its margin is not called nearer by numbers that are equal") {
     Problem problem = TestFolder().read();
     const auto error_at = [&](double z_m, double margin_m) {
-        problem.start.z_m = z_m;
+        problem.start.at[plane::z] = z_m;
         problem.planner.safety_margin_m = margin_m;
         const std::vector<KeyError> errors = problem_errors(problem);
         return errors.empty() ? "none" : errors.front().message;
@@ -92,7 +92,7 @@ TEST_CASE("a start that only rounding tells from its margin is not called nearer
 TEST_CASE("a problem built in code is judged by the same ranges as a file") {
     Problem problem = TestFolder().read();
     CHECK(problem_errors(problem).empty());
-    problem.start.x_m = std::numeric_limits<double>::quiet_NaN();
+    problem.start.at[plane::x] = std::numeric_limits<double>::quiet_NaN();
     problem.robot.arm.length_m = -1;
     problem.planner.algorithm = "magic";
     const std::vector<KeyError> errors = problem_errors(problem);

@@ -21,7 +21,7 @@ TEST_CASE("a problem is read as it is written, angles in radians") {
     CHECK(std::get<Cylinder>(problem.obstacles[1].shape).length_m == 5);
     CHECK(problem.obstacles[1].center_world_m == Vector3{4, 3, 2.5});
     CHECK(problem.aero.ceiling.parameters[0] == 6.9);
-    CHECK(problem.start.arm_rad == 1.5707963267948966);
+    CHECK(problem.start.at[plane::arm] == 1.5707963267948966);
     CHECK(std::holds_alternative<EndEffectorGoal>(problem.goal.kind));
 }
 
@@ -314,7 +314,7 @@ TEST_CASE("single values are set as a file would set them") {
     set_parameter(problem, "planner.max_iterations", "500");
     CHECK(problem.planner.max_iterations == 500U);
     set_parameter(problem, "start.arm_deg", "180");
-    CHECK(problem.start.arm_rad == 3.141592653589793);
+    CHECK(problem.start.at[plane::arm] == 3.141592653589793);
     CHECK_THROWS_WITH(set_parameter(problem, "planner.variant", "mparm"),
                       "planner.variant: is 'mparm': expected one of mp-arm, mp-arm-da or mp-arm-ada; did you mean "
                       "'mp-arm'?");

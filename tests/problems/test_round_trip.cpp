@@ -22,9 +22,9 @@ class ProblemMaker {
     Problem varied(Problem problem) {
         problem.bounds.x_low_m -= uniform();
         problem.bounds.z_high_m += uniform();
-        problem.start.x_m += 0.1 * uniform();
-        problem.start.z_m += 0.1 * uniform();
-        problem.start.arm_rad += 0.2 * uniform();
+        problem.start.at[plane::x] += 0.1 * uniform();
+        problem.start.at[plane::z] += 0.1 * uniform();
+        problem.start.at[plane::arm] += 0.2 * uniform();
         problem.start.pitch_rate_rad_s = uniform() - 0.5;
         if (coin()) {
             ReferencePoint& reference = problem.start.reference.emplace();

@@ -87,9 +87,9 @@ Problem short_way(const Robot& robot) {
     problem.name = "extreme";
     problem.robot = robot;
     problem.bounds = {-20, 20, -20, 20};
-    problem.start.x_m = 0;
-    problem.start.z_m = 2;
-    problem.start.arm_rad = test::quarter_turn;
+    problem.start.at[plane::x] = 0;
+    problem.start.at[plane::z] = 2;
+    problem.start.at[plane::arm] = test::quarter_turn;
     problem.goal = test::configuration_goal(0.5, 2.5);
     problem.goal.hold_s = 1;
     problem.planner.variant = Variant::mp_arm_da;
@@ -125,7 +125,7 @@ Solution flown_by(const Robot& robot, const Problem& problem) {
     other.robot = robot;
     const auto model = make_flight_model(other);
     const double tick_s = model->tick().tick_s;
-    const Configuration start = problem.start.configuration();
+    const Configuration start = problem.start.at;
     const Configuration goal{start[plane::x] + 0.5, start[plane::z] + 0.5, start[plane::arm]};
     Solution solution;
     solution.status = Status::solved;

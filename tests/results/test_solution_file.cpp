@@ -48,7 +48,7 @@ Solution sample() {
     plan.tick_s = 1 / problem().robot.controller.rate_hz;
     const std::int64_t ticks[] = {0, 333, 100003};
     for (int i = 0; i < 3; ++i) {
-        ReferenceKnot knot{ticks[i], at_rest(problem().start.configuration())};
+        ReferenceKnot knot{ticks[i], at_rest(problem().start.at)};
         for (int axis = 0; axis < 3; ++axis) {
             knot.point.position[axis] += i * std::sqrt(2.0 + axis);
             knot.point.velocity[axis] = i * (axis - 1) / 3.0;

@@ -73,9 +73,8 @@ void check_that_rows_follow(const Problem& problem, const std::vector<Row>& rows
 /// A flight up to the deck of the bridge, one rotor radius below it, with a swing of the arm.
 Execution flight_to_deck(const Problem& problem) {
     const auto model = make_flight_model(problem);
-    const std::vector<ReferenceKnot> knots{{0, at_rest(problem.start.configuration())},
-                                           {400, at_rest({-9.5, 9.4, 0.6})},
-                                           {800, at_rest({-8.5, 9.7, 1.2})}};
+    const std::vector<ReferenceKnot> knots{
+        {0, at_rest(problem.start.at)}, {400, at_rest({-9.5, 9.4, 0.6})}, {800, at_rest({-8.5, 9.7, 1.2})}};
     return execute(*model, start_state(*model, problem.start), knots, problem.goal, true);
 }
 

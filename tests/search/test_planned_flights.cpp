@@ -98,8 +98,8 @@ TEST_CASE("a flight that comes nearer than the margin is rejected") {
     const auto rejection_with = [&](double margin_m) {
         Problem problem = test::ceiling_problem();
         problem.planner.safety_margin_m = margin_m;
-        problem.start.z_m = from[plane::z];
-        problem.start.arm_rad = from[plane::arm];
+        problem.start.at[plane::z] = from[plane::z];
+        problem.start.at[plane::arm] = from[plane::arm];
         Fixture f(std::move(problem));
         FlightJob job{f.task.start, {{f.segment(from, to)}}, 0};
         f.flights.fly({&job, 1});
@@ -172,7 +172,7 @@ TEST_CASE("an arm that does not move stays at its angle in flight") {
     Problem problem = test::ceiling_problem();
     problem.robot.arm.is_limited = true;
     problem.robot.arm.lower_limit_rad = problem.robot.arm.upper_limit_rad = 0;
-    problem.start.arm_rad = 0;
+    problem.start.at[plane::arm] = 0;
     Fixture f(std::move(problem));
     FlightJob job{f.task.start, {{f.segment({-4, 2, 0}, {-2, 3, 0})}}, 0};
     f.flights.fly({&job, 1});
@@ -206,8 +206,8 @@ planning::SearchWorlds raised_worlds(const Fixture& f, std::initializer_list<dou
 /// A problem whose vehicle begins low over the ground, arm up: 0.64 m of clearance.
 Problem low_problem() {
     Problem problem = test::ceiling_problem();
-    problem.start.z_m = 0.7;
-    problem.start.arm_rad = -quarter_turn;
+    problem.start.at[plane::z] = 0.7;
+    problem.start.at[plane::arm] = -quarter_turn;
     problem.planner.safety_margin_m = 0.6;
     return problem;
 }

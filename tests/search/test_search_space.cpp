@@ -56,7 +56,7 @@ TEST_CASE(
 TEST_CASE("an arm that does not move is at its angle in every sample, and distances are those of the vehicle") {
     Problem problem = with_configuration_goal();
     problem.robot.arm.is_limited = true;
-    problem.robot.arm.lower_limit_rad = problem.robot.arm.upper_limit_rad = problem.start.arm_rad;
+    problem.robot.arm.lower_limit_rad = problem.robot.arm.upper_limit_rad = problem.start.at[plane::arm];
     const Fixture f(problem);
     planning::Random random(3);
     for (int i = 0; i < 100; ++i) {
@@ -65,15 +65,15 @@ TEST_CASE("an arm that does not move is at its angle in every sample, and distan
         const std::optional<Configuration> goal = f.space.sample_goal(random);
         REQUIRE(goal);
         for (const Configuration& c : {any, near, *goal, f.space.steered(any, *goal, 0.5)}) {
-            CHECK(c[plane::arm] == Approx(problem.start.arm_rad).margin(1e-12));
+            CHECK(c[plane::arm] == Approx(problem.start.at[plane::arm]).margin(1e-12));
         }
         CHECK(f.space.distance_m(any, near) ==
               Approx(std::hypot(any[plane::x] - near[plane::x], any[plane::z] - near[plane::z])));
         CHECK(f.space.is_near_goal(*goal));
     }
-    Configuration turned = problem.start.configuration();
+    Configuration turned = problem.start.at;
     turned[plane::arm] += 1e-3;
-    CHECK(f.space.rejection_at(problem.start.configuration()) == Rejection::none);
+    CHECK(f.space.rejection_at(problem.start.at) == Rejection::none);
     CHECK(f.space.rejection_at(turned) == Rejection::arm_limits);
 }
 

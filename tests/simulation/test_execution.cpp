@@ -12,7 +12,7 @@ using namespace downwash;
 namespace {
 
 std::vector<ReferenceKnot> from_start(const Problem& problem, const Configuration& to, std::int64_t ticks) {
-    return {{0, at_rest(problem.start.configuration())}, {ticks, at_rest(to)}};
+    return {{0, at_rest(problem.start.at)}, {ticks, at_rest(to)}};
 }
 
 Execution flown(const Problem& problem, const std::vector<ReferenceKnot>& knots, bool aero = true) {
@@ -96,9 +96,9 @@ TEST_CASE("a plan that ends elsewhere misses the goal, and so does one that noth
 
 TEST_CASE("a ceiling pulls a hovering vehicle in that stays away from it without surface effects") {
     Problem problem = test::with_place(-4, 4.7);
-    problem.start.z_m = 4.7;
+    problem.start.at[plane::z] = 4.7;
     problem.goal.hold_s = 20;
-    const std::vector<ReferenceKnot> hover{{0, at_rest({-4, 4.7, problem.start.arm_rad})}};
+    const std::vector<ReferenceKnot> hover{{0, at_rest({-4, 4.7, problem.start.at[plane::arm]})}};
     const Execution blind = flown(problem, hover, false);
     CHECK(blind.outcome == Outcome::ok);
     CHECK_FALSE(blind.aero);
@@ -110,8 +110,8 @@ TEST_CASE("a ceiling pulls a hovering vehicle in that stays away from it without
 
 TEST_CASE("surfaces save energy where the vehicle can hold near them") {
     Problem problem = test::with_place(-4, 0.7);
-    problem.start.z_m = 0.7;
-    problem.start.arm_rad = 0;
+    problem.start.at[plane::z] = 0.7;
+    problem.start.at[plane::arm] = 0;
     const std::vector<ReferenceKnot> hover{{0, at_rest({-4, 0.7, 0})}};
     const Execution in_effect = flown(problem, hover, true);
     const Execution out_of_effect = flown(problem, hover, false);
@@ -143,7 +143,7 @@ TEST_CASE("goals on the way count as met only when the reference stands at them 
     Goal stop = problem.goal;
     test::configuration(stop).x_m = -3;
     stop.hold_s = 2;
-    const double down = problem.start.arm_rad;
+    const double down = problem.start.at[plane::arm];
     const ReferencePoint start = at_rest({-4, 2, down}), middle = at_rest({-3, 2, down}), end = at_rest({-2, 2, down});
     const auto flown_by = [&](const std::vector<ReferenceKnot>& knots, const std::vector<Goal>& goals) {
         return execute(*model, start_state(*model, problem.start), knots, goals, true);
@@ -187,7 +187,7 @@ TEST_CASE("goals on the way count as met only when the reference stands at them 
 TEST_CASE("a goal is met only by a vehicle that stays within its tolerance for the last second") {
     Problem problem = test::with_place(-3, 2);  // from (-4, 2)
     test::configuration(problem.goal).tolerance_m = 0.05;
-    const std::vector<ReferenceKnot> quick = from_start(problem, {-3, 2, problem.start.arm_rad}, 200);
+    const std::vector<ReferenceKnot> quick = from_start(problem, {-3, 2, problem.start.at[plane::arm]}, 200);
     const auto error_m = [](const FlightRow& row) { return std::hypot(row.q[0] + 3, row.q[1] - 2); };
     problem.goal.hold_s = 0.5;
     const Execution early = flown(problem, quick);

@@ -51,9 +51,9 @@ inline Problem ceiling_problem() {
     problem.robot = test_robot();
     problem.bounds = {-6, 6, 0.5, 5};
     problem.obstacles = {box("ground", {30, 20, 1}, {0, 0, -0.5}), box("ceiling", {30, 8, 1}, {0, 0, 5.5})};
-    problem.start.x_m = -4;
-    problem.start.z_m = 2;
-    problem.start.arm_rad = quarter_turn;
+    problem.start.at[plane::x] = -4;
+    problem.start.at[plane::z] = 2;
+    problem.start.at[plane::arm] = quarter_turn;
     problem.goal = tip_goal(3, 4.8);
     problem.planner.seed = 1;
     problem.planner.max_iterations = 150;

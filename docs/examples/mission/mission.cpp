@@ -123,7 +123,7 @@ class Mission {
     /// Plans from the problem's start, where the vehicle hovers.
     void plan_first() {
         const Start start = planner_.problem().start;
-        following_ = {now(), start, Plan{{{0, at_rest(start.configuration())}}, link_.tick_s()}, Advice::stop};
+        following_ = {now(), start, Plan{{{0, at_rest(start.at)}}, link_.tick_s()}, Advice::stop};
         const Solution& solution = planner_.solve();
         if (solution.status != Status::solved) {
             throw MissionFailed("no plan to the first target");
@@ -210,8 +210,8 @@ class Mission {
     [[nodiscard]] Start predicted(std::int64_t tick) const {
         Start start = modelled(tick);
         const auto [x_m, z_m] = offset_m();
-        start.x_m += x_m;
-        start.z_m += z_m;
+        start.at[plane::x] += x_m;
+        start.at[plane::z] += z_m;
         return start;
     }
 

@@ -124,7 +124,7 @@ class Vehicle {
           scene_(problem_.obstacles),
           vehicle_(problem_, conditions_of(problem_, options)),
           tick_s_(1 / problem_.robot.controller.rate_hz),
-          commands_(problem_.start.configuration(), tick_s_),
+          commands_(problem_.start.at, tick_s_),
           held_(goals_of(problem_).size(), false) {}
 
     /// Flies until the mission planner ends the mission, or the flight ends by itself.
