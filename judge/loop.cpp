@@ -62,7 +62,9 @@ Motion Loop::motion_within(double since_s) const {
 }
 
 Motion motion_of(const Start& s) {
-    return {{s.x_m, s.z_m}, {s.vx_m_s, s.vz_m_s}, s.pitch_rad, s.pitch_rate_rad_s, s.arm_rad, s.arm_rate_rad_s};
+    using namespace plane;
+    return {{s.at[x], s.at[z]}, {s.velocity[x], s.velocity[z]}, s.pitch_rad, s.pitch_rate_rad_s, s.at[arm],
+            s.velocity[arm]};
 }
 
 PlantState start_of(const Start& s, const ControlLaw& law, const Vehicle& vehicle) {
