@@ -26,7 +26,7 @@ int main() {
 
     problem.bounds = {.x_low_m = -6, .x_high_m = 6, .z_low_m = 0.5, .z_high_m = 5};
     problem.obstacles = {{"ground", Box{{30, 20, 1}}, {0, 0, -0.5}}, {"ceiling", Box{{30, 8, 1}}, {0, 0, 5.5}}};
-    problem.start = {.x_m = -4, .z_m = 2, .arm_rad = 1.57};
+    problem.start = Start::resting_at({-4, 2, 1.57});
     problem.goal.kind = EndEffectorGoal{.x_m = 3, .z_m = 4.8, .direction_rad = {}};
     problem.planner.max_iterations = 100;
 

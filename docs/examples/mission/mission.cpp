@@ -224,9 +224,10 @@ class Mission {
         }
         // The estimator is late. Within so short a time the vehicle moves almost evenly.
         const std::int64_t seen = now() - ticks(bridge_.robot.controller.delay_s);
-        const Start last = modelled(seen);
-        const Start first = modelled(seen + 1 - std::ssize(x_m));
-        return {rounded(mean(x_m) - 0.5 * (first.x_m + last.x_m)), rounded(mean(z_m) - 0.5 * (first.z_m + last.z_m))};
+        const Configuration last = modelled(seen).at;
+        const Configuration first = modelled(seen + 1 - std::ssize(x_m)).at;
+        return {rounded(mean(x_m) - 0.5 * (first[plane::x] + last[plane::x])),
+                rounded(mean(z_m) - 0.5 * (first[plane::z] + last[plane::z]))};
     }
 
     [[nodiscard]] double drift_m() const {
