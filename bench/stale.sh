@@ -8,7 +8,8 @@ cd -P "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 results=bench/results
 sources=$results/sources.txt
 
-if [[ $(git rev-parse --is-shallow-repository 2>/dev/null || echo true) == true ]]; then
+# A tree that was unpacked inside another repository has no history of its own either.
+if [[ $(git rev-parse --is-shallow-repository 2>/dev/null || echo true) == true || -n $(git rev-parse --show-prefix) ]]; then
     echo "stale.sh: no clone with its whole history, nothing to compare"
     exit 77
 fi
@@ -22,18 +23,20 @@ words() {
 contents() {
     local folders
     mapfile -t folders < <(words group "$2")
-    git ls-tree -r --format='%(objectname) %(path)' "$1" 2>/dev/null |
+    git ls-tree -r "$1" | # mode, type, object and, after a tab, path
         awk -v wanted="${folders[*]}" '
-            FILENAME == "-" {
-                path = $2
+            NR != FNR {
+                object = $3
+                path = $0
+                sub(/^[^\t]*\t/, "", path)
                 top = path
                 sub(/\/.*/, "", top)
                 if (top in today) path = today[top] substr(path, length(top) + 1)
                 if (path ~ /\.md$/) next
-                for (i in folder) if (index(path "/", folder[i] "/") == 1) { print path, $1; next }
+                for (i in folder) if (index(path "/", folder[i] "/") == 1) { print path, object; next }
                 next
             }
-            FNR == 1 { split(wanted, folder, " ") }
+            NR == 1 { split(wanted, folder, " ") }
             $1 == "moved" { today[$2] = $3 }' "$sources" - | LC_ALL=C sort
 }
 
@@ -54,7 +57,7 @@ is_current() {
         for range in "${ranges[@]}"; do
             from=${range%..*} to=${range#*..}
             if [[ $(git rev-parse "$commit") != $(git rev-parse "$to") ]] && ! git merge-base --is-ancestor "$to" "$commit" &&
-                { git merge-base --is-ancestor "$from" "$commit" || is_same "$commit" "$from" "$2"; }; then
+                { { git merge-base --is-ancestor "$from" "$commit" && git merge-base --is-ancestor "$commit" "$to"; } || is_same "$commit" "$from" "$2"; }; then
                 commit=$to
                 moved=1
                 break
@@ -64,9 +67,30 @@ is_current() {
     return 1
 }
 
+failed=0
+# A misspelled folder or a range that ends at a name such as HEAD would let every change pass.
+while read -r group folder; do
+    [[ -e $folder ]] && continue
+    echo "$sources: group $group names $folder, which is not there"
+    failed=1
+done < <(awk '$1 == "group" { for (i = 3; i <= NF; ++i) print $2, $i }' "$sources")
+while read -r group range; do
+    for commit in "${range%..*}" "${range#*..}"; do
+        if [[ ! $commit =~ ^[0-9a-f]{7,40}$ ]] || ! git cat-file -e "$commit^{commit}" 2>/dev/null; then
+            echo "$sources: the range $range of group $group needs the hashes of two commits, and $commit is none that is known here"
+            failed=1
+        fi
+    done
+done < <(awk '$1 == "same" { print $2, $3 }' "$sources")
+while read -r group; do
+    [[ -n $(words group "$group") ]] && continue
+    echo "$sources: no line describes the group $group"
+    failed=1
+done < <(awk '$1 == "page" || $1 == "same" { print $2 }' "$sources" | LC_ALL=C sort -u)
+[[ $failed == 0 ]] || exit 1
+
 listed=$(awk '/^## / { inside = $0 == "## Older than the sources" } inside' "$results/README.md" |
     { grep -oE '\]\([a-z_]+\.md\)' || true; } | tr -d ']()')
-failed=0
 mapfile -t pages < <(git grep -ohE "$results/[a-z_]+\.md" -- README.md docs | sed "s|^$results/||" | LC_ALL=C sort -u)
 for page in "${pages[@]}"; do
     [[ $page != README.md ]] || continue

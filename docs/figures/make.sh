@@ -12,7 +12,7 @@ trap 'rm -rf "$work"' EXIT
 bridge=$work/bridge_inspection.yaml
 sed "s#robots/ars_lrm#$problems/robots/ars_lrm_ideal#; s/^uncertainty: {}/uncertainty: none/" \
     "$problems/bridge_inspection.yaml" >"$bridge"
-data=../../effects/measurements/surface_effect_measurements.csv
+data=../../aeromap/effects/measurements/surface_effect_measurements.csv
 
 plot() { # FILE arguments...
     local file=$1
@@ -25,8 +25,8 @@ plot figure_2_2.svg --flow --z-over-r 1.5
 plot figure_2_9.svg --model cheeseman-bennett he hayden li --data "$data" --surface ground --z-over-r 0.3 4
 plot figure_2_12.svg --model cheeseman-bennett multirotor-images multirotor-body --rotor-spacing 2.5 \
     --data "$data" --surface ground --z-over-r 0.3 4
-tilted=../../effects/measurements/tilted_rotors_ground.csv
-walls=../../effects/measurements/walls/wall_effect.csv
+tilted=../../aeromap/effects/measurements/tilted_rotors_ground.csv
+walls=../../aeromap/effects/measurements/walls/wall_effect.csv
 plot figure_2_20.svg --model cheeseman-bennett --tilt-deg 0 10 30 --data "$tilted" --z-over-r 0.5 4
 plot figure_2_15.svg --model sanchez-cuevas momentum-theory fairing-cfd --data "$data" --surface ceiling --z-over-r 0.2 4
 

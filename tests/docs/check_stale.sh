@@ -51,6 +51,13 @@ after=$(commit 'other sources')
 expect 1 'bench/results/fast.md is stale'
 echo "same all $before..$after the same figures" >>bench/results/sources.txt
 expect 0 ''
+sed -i "s/\.\.$after/..HEAD/" bench/results/sources.txt
+expect 1 'needs the hashes of two commits'
+sed -i "s/\.\.HEAD/..$after/" bench/results/sources.txt
+sed -i 's/^group all.*/group all planner\/serch/' bench/results/sources.txt
+expect 1 'which is not there'
+sed -i 's/^group all.*/group all planner\/search/' bench/results/sources.txt
+expect 0 ''
 echo 'int third;' >planner/search/tree.cpp
 commit 'other sources again' >/dev/null
 expect 1 'bench/results/fast.md is stale'
@@ -66,6 +73,11 @@ echo 'page all large.md' >>bench/results/sources.txt
 echo 'Large.' >bench/results/large.md
 git add -A
 expect 1 'names no commit'
+mkdir unpacked
+cp -r bench docs planner unpacked
+cd unpacked
+expect 77 'whole history'
+cd ..
 git clone -q --depth 1 "file://$work" shallow
 cd shallow
 expect 77 'whole history'
