@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Do two builds plan the same flights? Solves every shipped problem with three variants and seeds 1 to 5 by both, and compares
-# trajectory.csv byte by byte. A change that is to change no result passes with no difference.
+# trajectory.csv byte by byte, and cost, certificate and safe stops of solution.json. A change that is to change no result passes
+# with no difference.
 # Usage: bench/same_bytes.sh OTHER_BUILD/downwash [iterations, default 600] [seeds, default 5] [folder of the problems]
 # An older build may know keys only by their former names: give it the problems of its own version, which both read.
 set -euo pipefail
@@ -14,7 +15,7 @@ here=build/downwash
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
-# hash PROGRAM PROBLEM VARIANT SEED: of the flight; exit codes 1 and 3 are results too.
+# hash PROGRAM PROBLEM VARIANT SEED: of the flight and what is said of it; exit codes 1 and 3 are results too.
 hash() {
     local out="$folder/$3-$4" code=0
     rm -rf "$out"
@@ -24,7 +25,15 @@ hash() {
         cat "$folder/log" >&2
         return 1
     fi
-    sha256sum <"$out/trajectory.csv" 2>/dev/null | cut -c1-16 || echo "no plan"
+    if [[ ! -e $out/trajectory.csv ]]; then
+        echo "no plan"
+        return
+    fi
+    {
+        cat "$out/trajectory.csv"
+        python3 -c 'import json, sys; said = json.load(sys.stdin); print([said[key] for key in ("cost", "certificate", "stops")])' \
+            <"$out/solution.json"
+    } | sha256sum | cut -c1-16
 }
 
 different=0
