@@ -17,8 +17,7 @@ struct GridSampling {
     std::function<void(double)> on_progress;  ///< see run_parallel
 };
 
-/// K, its two one-sided factors and the flyable area, evaluated directly at the nodes of a planar grid with one layer
-/// per lateral offset.
+/// Samples K, its two one-sided factors and the flyable area directly on planes, one for each lateral offset.
 /// @param layers of distinct lateral offsets, in any order
 /// @throws InputError if the extent is empty, two layers share an offset, or the grid would have too many nodes
 [[nodiscard]] DOWNWASH_EXPORT FactorGrid sample_planes(std::vector<MapLayer> layers, const GridSampling& sampling,

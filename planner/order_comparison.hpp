@@ -6,29 +6,29 @@
 
 namespace downwash::planning {
 
-/// Compares orders of targets by flown legs, of which it flies only those that may belong to the best order.
+/// Compares orders of targets by simulated legs, and simulates only legs that may belong to the best order.
 class DOWNWASH_EXPORT OrderComparison {
  public:
     /// @param is_stopped asked between legs   @pre table outlives it
     OrderComparison(LegTable& table, StopCondition is_stopped)
         : energy_limit_j(table.estimates().energy_budget_j), table_(table), is_stopped_(std::move(is_stopped)) {}
 
-    /// Flies the legs of nearest_first() by flown costs, so that no order is chosen that costs more; then those of the
-    /// order that is the best by what is known, again and again, until it consists of flown legs. As long as the budget
-    /// allows it does so anew, each time with twice as much for a leg, of which the cheapest flight counts.
+    /// First simulates the legs of nearest_first(), so that no costlier order is chosen. Then it simulates those of the
+    /// order that is best by what is known, until all legs of the best order are simulated. While the budget lasts it
+    /// repeats this with twice the budget per leg; the cheapest flight of each leg counts.
     /// @return the work of all searches
     [[nodiscard]] SearchRecord compare(const SearchBudget& budget);
 
-    /// The best order of flown legs or, where others may visit more, of those.
+    /// The best order of simulated legs only or, if lower bounds allow an order with more targets, that one.
     [[nodiscard]] PlaceOrder chosen() const;
 
-    /// The best order by lower bounds and the legs that were flown.
+    /// The best order by simulated legs and, for the others, lower bounds.
     [[nodiscard]] PlaceOrder likely() const { return best_order(limited(table_.estimates())); }
 
-    double energy_limit_j;  ///< budget for the legs of an order together: what they say of a whole flight is not exact
+    double energy_limit_j;  ///< for all legs of an order; callers adjust it, as legs only approximate a flight
 
  private:
-    /// With the limit of energy.
+    /// The costs with energy_limit_j as their budget.
     [[nodiscard]] LegCosts limited(LegCosts costs) const {
         costs.energy_budget_j = energy_limit_j;
         return costs;
@@ -46,7 +46,7 @@ class DOWNWASH_EXPORT OrderComparison {
     StopCondition is_stopped_;
 };
 
-/// Whether an order exists and visits a place.
+/// Whether an order was found and visits at least one place.
 [[nodiscard]] DOWNWASH_EXPORT bool is_order(const PlaceOrder& order);
 
 }  // namespace downwash::planning

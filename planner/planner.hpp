@@ -20,15 +20,15 @@ namespace downwash {
 
 /// What has changed in a problem since the last plan.
 struct SceneChange {
-    std::vector<Obstacle> put;         ///< new ones; one with a name takes the place of the obstacle of that name
-    std::vector<std::string> removed;  ///< names of obstacles that are gone
-    std::optional<Goal> goal;          ///< instead of all goals that were not visited yet
+    std::vector<Obstacle> put;         ///< obstacles to add; a named one replaces the obstacle of that name
+    std::vector<std::string> removed;  ///< names of obstacles to remove
+    std::optional<Goal> goal;          ///< replaces all goals that were not visited yet
 };
 
 /// What a vehicle in the air should do.
 enum class Advice : std::uint8_t {
-    keep,    ///< follow what is left of the last plan: it is safe in the scene as it is now
-    follow,  ///< follow a new plan to the goal
+    keep,    ///< fly the rest of the last plan: it is safe in the scene as it is now
+    follow,  ///< fly a new plan to the goal
     stop,    ///< brake and hover: that is safe
     none,    ///< nothing is known to be safe, and a collision may be ahead; brake in the way that fails in the fewest
              ///< worlds
@@ -37,11 +37,11 @@ enum class Advice : std::uint8_t {
 /// Name as in messages: "keep".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Advice advice);
 
-/// An answer to where to fly from a moment on.
+/// What to fly from a given moment on.
 struct Answer {
     Advice advice = Advice::none;
-    /// From the start on, its first knot at tick 0. Of `none` it is what is left of the last plan where every way to
-    /// brake leaves the bounds.
+    /// The plan from the start on, its first knot at tick 0. With `none`, if every braking manoeuvre leaves the bounds,
+    /// it is the rest of the last plan.
     Plan plan;
     double cost = 0;  ///< cost of the flight with direct aerodynamics, by the problem's objective; `keep` and `follow`
     double after_wall_s = 0;           ///< since replan() was called
@@ -50,19 +50,20 @@ struct Answer {
 
 /// How to replan. Its functions must not throw.
 struct ReplanOptions {
-    /// Wall time of all [s], at most 10^6, and iterations of the search, at most 10^15. As in PlannerSettings: with
-    /// iterations alone the result does not depend on how fast the machine is. An aero map that has to be made before
-    /// the search is finished whatever the time.
+    /// Wall time of the whole call [s], at most 10^6, and iterations of the search, at most 10^15. With iterations
+    /// alone the result does not depend on how fast the machine is. A new aero map that the search needs is completed
+    /// even past the time limit.
     std::optional<double> time_limit_s;
     std::optional<std::uint64_t> max_iterations;
     std::stop_token stop;  ///< ends the call early, once it is known how to stop
-    /// Called by replan()'s thread with each answer that is better than the one before: first what is safe at once.
+    /// Called by replan()'s thread with each answer that is better than the one before; the first one is
+    /// safe immediately.
     std::function<void(const Answer&)> on_answer;
 };
 
-/// A planner that stays with a vehicle in the air. It keeps scene, model, map, plan and what the last search has found
-/// between calls, so that a new answer takes little: maps are evaluated again only where the scene has changed, and a
-/// search begins with what is left of the last plan and with the places that carried its tree.
+/// Replans for a vehicle in flight. It keeps scene, model, map, plan and what the last search found between calls, so
+/// that a new answer takes little time: maps are evaluated again only where the scene has changed, and a search begins
+/// with the rest of the last plan and with configurations from which the last tree grew.
 ///
 /// replan() and solve() are for one thread at a time; latest() may be called from any thread at any time.
 class DOWNWASH_EXPORT Planner {
@@ -78,17 +79,17 @@ class DOWNWASH_EXPORT Planner {
     /// an energy budget is dropped: replan() does not know what the vehicle has left of it.
     const Solution& solve(std::stop_token stop = {});
 
-    /// Takes up changes and says what to do from a start on. A stop is looked for first, then whether what is left of
-    /// the last plan still holds, then a better plan is searched for. With an uncertainty, a plan that is found has a
-    /// certificate and replaces what is left of the last plan, which has flown in the worlds of the search only, even
-    /// if it costs more. The plan of the last answer, if it leads to the goal, is kept as the last plan.
+    /// Applies the changes and advises what to do from `start` on. It looks for a safe stop first, then checks whether
+    /// the rest of the last plan still holds, then searches for a better plan. With an uncertainty, a new plan is
+    /// certified and replaces the rest of the last plan even if it costs more, since that has flown in the worlds of
+    /// the search only. The plan of the last answer, if it leads to the goal, becomes the last plan.
     /// @param start the whole vehicle at the moment from which the answer counts; see start_of() and state_at()
     /// @param tick of the last plan at that moment
     /// @throws InputError, with nothing changed, when the problem with the changes has errors apart from its start, or
     /// a limit is out of range
     Answer replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options = {});
 
-    /// Takes a plan for the last one, from the problem's start to its goals, as one that was made before.
+    /// Uses a plan that was made earlier, from the problem's start to its goals, as the last plan.
     void adopt(const Plan& plan) { plan_ = plan; }
 
     /// The best answer so far to the last call of replan(); empty before its first answer.
@@ -101,7 +102,7 @@ class DOWNWASH_EXPORT Planner {
     /// The problem as it is now: with all changes, from the last start to the goals that are left.
     [[nodiscard]] const Problem& problem() const noexcept { return problem_; }
     [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
-    /// The model, to keep: a change of the scene makes another one.
+    /// Shares ownership of the model; a change of the scene makes another one.
     [[nodiscard]] std::shared_ptr<const FlightModel> shared_model() const noexcept { return model_; }
     /// The map of the scene as it was when one was last needed; nullptr before.
     [[nodiscard]] const AeroMap* map() const noexcept { return map_.get(); }
@@ -128,14 +129,14 @@ class DOWNWASH_EXPORT Planner {
     std::shared_ptr<const AeroMap> map_;  ///< map of the scene as it is, once it was needed
     std::vector<BoundingBox> unmapped_;   ///< changes that the map does not know yet
     std::optional<Plan> plan_;
-    std::vector<Configuration> places_;  ///< places that carried the tree of the last search
+    std::vector<Configuration> places_;  ///< from which the tree of the last search grew
     std::uint32_t searches_ = 0;         ///< searches of replan() so far
     Solution solution_;
     mutable std::mutex mutex_;  ///< guards latest_
     std::optional<Answer> latest_;
 };
 
-/// A vehicle after some ticks along a plan, through a map; whether that breaks rules is not asked.
+/// A vehicle after some ticks along a plan, through a map; rules are not checked.
 /// @param vehicle at the plan's start, replaced by the one later   @param map nullptr: surfaces do not act
 /// @param in the world, whose first_tick is that of the plan's start
 /// @return whether it is still stable and flyable

@@ -15,18 +15,17 @@ namespace downwash {
 struct Remedy {
     std::string change;  ///< change in words, for example "the goal 0.2 m lower"
     std::string error;   ///< why the changed problem cannot be planned; empty if it can
-    bool helps = false;  ///< a plan got its certificate
-    std::optional<Certificate>
-        certificate;    ///< certificate of that plan or, without one, of the plan that failed least
+    bool helps = false;  ///< whether a plan got its certificate
+    /// Certificate of that plan or, without one, of the plan that failed least.
+    std::optional<Certificate> certificate;
     double cost = 0;    ///< cost of that plan, in the objective's unit
     double wall_s = 0;  ///< time that the search took [s]
 };
 
 /// Tries what may help where a search found no certified plan: another place or tolerance of the goal, a larger margin,
-/// slower motion, a stiffer controller, and all that is uncertain known twice as well. Each change is made for itself
-/// and searched for until the first certified plan. The result does not say that nothing else would help.
-/// @param limit_s wall time of each search [s], > 0, times the number of goals to be visited; a limit of iterations
-/// stays
+/// slower motion, a stiffer controller, and all uncertainties halved. Each change is tried alone; its search ends at
+/// the first certified plan. The result does not say that nothing else would help.
+/// @param limit_s wall time of each search per goal [s], > 0; a limit of iterations stays
 /// @param on_tried called after each
 /// @pre the problem has an uncertainty
 /// @return in the order in which they were tried; fewer than all when options.stop was requested

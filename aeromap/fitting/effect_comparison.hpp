@@ -17,9 +17,8 @@ namespace downwash {
 struct ErrorBand {
     double z_low = 0, z_high = 0;  ///< z/R in [z_low, z_high); the last band is open, z_high infinite
     std::size_t points = 0;
-    /// Mean of K minus thrust ratio; 0 without points. Above zero the model overstates the effect. A plan that believes
-    /// it is then careful under a ceiling (more pull than there is, though more saved too) and optimistic over the
-    /// ground (lift, stiffness and savings that are not there); below zero it is the other way round.
+    /// Mean of K minus thrust ratio; 0 without points. Above zero the model overstates the effect: plans are too
+    /// cautious under a ceiling and too optimistic over the ground. Below zero it is the reverse.
     double mean_error = 0;
 };
 
@@ -29,8 +28,8 @@ struct ModelScore {
     bool is_refitted = false;  ///< false: with the parameters of its source
     bool is_at_bound = false;  ///< refitted, and a parameter is at the end of its allowed range
     double rmse = 0;
-    double level_rmse = 0;  ///< the error if the rotors counted as level
-    /// Refitted: the RMSE over all level measurements of other sources at the same surface, if there are any.
+    double level_rmse = 0;  ///< RMSE if the rotors are treated as level
+    /// Only if refitted: the RMSE over all level measurements of other sources at the same surface, if there are any.
     std::optional<double> others_rmse;
     std::vector<ErrorBand> bands;
 };
@@ -56,8 +55,8 @@ inline constexpr std::array error_band_edges{0.0, 0.5, 1.0, 2.0, std::numeric_li
 [[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> surface_error(const std::string& surface);
 
 /// Compares every model made for a surface with the measurements of each source, surface and tilt: with the parameters
-/// of the model's source and, where level measurements suffice, refitted to them (fit_effect; the formula is fitted
-/// unclamped). Over the ground the effect of a tilted rotor fades by default_ground_tilt_loss.
+/// of the model's source and, where level measurements suffice, refitted to them with K unclamped (fit_effect). Over
+/// the ground the effect of a tilted rotor is reduced as default_ground_tilt_loss says.
 /// @param neighbours of the vehicle measured; for one rotor alone the multirotor models are left out
 /// @param max_factor >= 1
 /// @throws InputError when there are more than 100 sets of source, surface and tilt, or a surface is neither "ground"

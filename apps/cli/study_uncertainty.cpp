@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "downwash/bench/study/uncertainty_figures.hpp"
+#include "downwash/bench/uncertainty_study/uncertainty_figures.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"

@@ -7,34 +7,35 @@
 
 namespace downwash::planning {
 
-/// The vehicle in every world that a search flies in, the nominal one first.
+/// The states of the one vehicle in the worlds of a search. The nominal world, where it belongs to them, is the first.
 using Fleet = std::vector<FlightState>;
 
-/// A job of a whole fleet: each vehicle flies the legs in its world.
+/// The same legs to be flown in every world.
 struct FleetJob {
     std::vector<FlightJob> jobs;  ///< one in each world
 
-    /// As flown in the nominal world.
+    /// The legs as flown in the nominal world.
     [[nodiscard]] const std::vector<FlightLeg>& legs() const noexcept { return jobs.front().legs; }
     /// The rejected leg in the first world in which the flight ended early; nullptr when it did in none.
     [[nodiscard]] const FlightLeg* rejected_leg() const noexcept;
     [[nodiscard]] bool is_accepted() const noexcept { return rejected_leg() == nullptr; }
-    /// At the end of a leg. @pre the flight was accepted that far
+    /// The states at the end of a leg. @pre the flight was accepted that far
     [[nodiscard]] Fleet fleet_after(std::size_t leg) const;
-    /// At the end. @pre is_accepted()
+    /// The states at the end of the last leg. @pre is_accepted()
     [[nodiscard]] Fleet end() const { return fleet_after(legs().size() - 1); }
 };
 
-/// A world in which a plan failed that had passed all those of the search, and the vehicle at the search's start in it.
+/// A world in which a plan failed although it passed in all worlds of the search, and the vehicle's state at the
+/// search's start there.
 struct Counterexample {
     FlownWorld world;
     FlightState start;
 };
 
-/// The worlds of a search beside the nominal one, and the fleet at its start. Empty for a search in one world.
+/// The worlds of a search without the nominal one, and the states at its start. Empty for a search in one world.
 struct SearchWorlds {
     std::vector<FlownWorld> worlds;
-    Fleet start;  ///< start in each of these worlds
+    Fleet start;  ///< state at the start in each of these worlds
 };
 
 }  // namespace downwash::planning

@@ -6,7 +6,7 @@
 
 #include "../support/scratch_folder.hpp"
 #include "../support/test_problem.hpp"
-#include "downwash/bench/study/uncertainty_figures.hpp"
+#include "downwash/bench/uncertainty_study/uncertainty_figures.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
 using namespace downwash;

@@ -1,6 +1,6 @@
 // The thrust ratio K: a raster under the scene, and its colour bar.
 
-import {class_of, colors_of} from "./colors.js";
+import {class_of, colors_of} from "./factor_colors.js";
 import {h, s} from "./dom.js";
 import {number, place} from "./format.js";
 

@@ -1,4 +1,4 @@
-#include "downwash/bench/study/uncertainty_figures.hpp"
+#include "downwash/bench/uncertainty_study/uncertainty_figures.hpp"
 
 #include <algorithm>
 #include <map>

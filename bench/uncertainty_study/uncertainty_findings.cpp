@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "downwash/bench/campaign_rows.hpp"
-#include "downwash/bench/study/uncertainty_figures.hpp"
+#include "downwash/bench/uncertainty_study/uncertainty_figures.hpp"
 
 namespace downwash::bench {
 namespace {

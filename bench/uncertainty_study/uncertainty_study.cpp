@@ -1,4 +1,4 @@
-#include "downwash/bench/study/uncertainty_study.hpp"
+#include "downwash/bench/uncertainty_study/uncertainty_study.hpp"
 
 #include <utility>
 

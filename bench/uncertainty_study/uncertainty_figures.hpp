@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "downwash/bench/campaign_report.hpp"
-#include "downwash/bench/study/uncertainty_study.hpp"
+#include "downwash/bench/uncertainty_study/uncertainty_study.hpp"
 
 namespace downwash::bench {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "downwash/bench/study/uncertainty_figures.hpp"
+#include "downwash/bench/uncertainty_study/uncertainty_figures.hpp"
 
 namespace downwash::bench {
 namespace {
