@@ -9,7 +9,7 @@
 
 namespace downwash {
 
-/// What a wall did to a vehicle that hovered beside it, over its thrust T.
+/// Force and moment of a wall on a vehicle that hovers beside it, divided by its thrust T.
 struct WallMeasurement {
     std::string facility;                  ///< where it was measured; empty if the file does not say
     double distance_over_r = 0;            ///< from the axis of the nearest rotor to the wall, in rotor radii

@@ -17,7 +17,7 @@ class Seeded : public Planner {
         this->rng_.setLocalSeed(seed);
     }
 
-    /// The number of nodes of its tree, 0 before its first turn.
+    /// Nodes in its tree or both of its trees; 0 before the first iteration.
     [[nodiscard]] std::size_t nodes() const {
         if constexpr (requires { this->tStart_; }) {
             return this->tStart_->size() + this->tGoal_->size();
@@ -30,7 +30,7 @@ class Seeded : public Planner {
 /// Gives a planner its problem, and an exact neighbour search that draws no random numbers.
 template <class Planner, class Definition>
 std::shared_ptr<Planner> with_linear_neighbours(std::shared_ptr<Planner> planner, const Definition& definition) {
-    planner->setProblemDefinition(definition);  // the set-up of some needs the objective
+    planner->setProblemDefinition(definition);  // some planners need the objective during set-up
     planner->template setNearestNeighbors<ompl::NearestNeighborsLinear>();
     return planner;
 }
