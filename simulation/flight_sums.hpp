@@ -8,7 +8,7 @@ struct BasicFlightSums {
     T length_m{};  ///< integral of sqrt(dx^2 + dz^2 + (w darm)^2), w = half the arm's length
 };
 
-/// Those of one flight.
+/// The sums of one flight.
 using FlightSums = BasicFlightSums<double>;
 
 }  // namespace downwash

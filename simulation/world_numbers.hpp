@@ -2,15 +2,15 @@
 
 #include "downwash/dynamics/plant_model.hpp"
 
-// What a world has otherwise than the controller believes, as numbers for the tick: docs/model.md 9. Nothing is
-// computed here: see world_tick.hpp and surroundings.hpp.
+// How a world differs from the nominal one, as numbers for the tick (docs/model.md 9). world_tick.hpp and
+// surroundings.hpp compute with them.
 
 namespace downwash::simulation {
 
-/// Control ticks by which the state that the controller sees may be late.
+/// The greatest delay of the state that the controller sees, in control ticks.
 inline constexpr int max_delay_ticks = 3;
 
-/// Standard normal numbers that a world draws for every tick.
+/// How many standard normal numbers a world draws for every tick.
 inline constexpr int noise_count = 8;
 
 /// Where and how fast the vehicle was.

@@ -17,9 +17,9 @@ namespace downwash {
 struct ErrorBand {
     double z_low = 0, z_high = 0;  ///< z/R in [z_low, z_high); the last band is open, z_high infinite
     std::size_t points = 0;
-    /// Mean of K minus thrust ratio; 0 without points. Above zero the model overstates the effect. A plan that believes
-    /// it is then careful under a ceiling (more pull than there is, though more saved too) and optimistic over the
-    /// ground (lift, stiffness and savings that are not there); below zero it is the other way round.
+    /// Mean of K minus thrust ratio; 0 without points. Above zero the model overstates the effect. A plan made with it
+    /// is then careful under a ceiling (more pull than there is, though more saved too) and optimistic over the ground
+    /// (lift, stiffness and savings that are not there); below zero it is the other way round.
     double mean_error = 0;
 };
 
