@@ -9,7 +9,7 @@ namespace downwash::bench {
 /// A digest of everything that a run consists of: equal if it was read back as it was written.
 [[nodiscard]] std::string checksum_of(const Run& run);
 
-/// The same for everything that a campaign runs.
+/// A digest of everything that a campaign runs.
 [[nodiscard]] std::string checksum_of(const CampaignPlan& plan);
 
 }  // namespace downwash::bench

@@ -88,7 +88,7 @@ struct CellFigures {
     std::vector<SolvedAt> solved_over_time;
     std::vector<HeldAt> held_over_cost;  ///< shares of flights that held, over executed costs
     WorldsFigures in_worlds;
-    std::vector<SeedFigures> seeds;  ///< that were attempted
+    std::vector<SeedFigures> seeds;  ///< seeds that were attempted
 };
 
 /// One planner on all experiments together.
@@ -118,7 +118,7 @@ struct FailureGroup {
 /// The minimum margin from which on no flight of an experiment failed. It may be safe only because no plan was found.
 struct SafeMargin {
     double margin_m = 0;
-    Share solved;  ///< with it
+    Share solved;  ///< solved runs with this margin
 };
 
 /// The results of a variant and algorithm for increasing margins.

@@ -16,7 +16,7 @@ struct StoredRun {
     std::uint64_t key = 0;
     Run run;
     std::uint64_t is_solved = 0, is_approximate = 0, is_correct = 0;  ///< columns that follow from the others
-    std::string checksum;                                             ///< that the run should have
+    std::string checksum;                                             ///< checksum that the run should have
 
     /// Whether it is not what was written.
     [[nodiscard]] bool is_damaged(const CampaignPlan& plan) const;

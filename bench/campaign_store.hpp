@@ -71,7 +71,7 @@ class CampaignStore {
 CampaignPlan read_runs(const std::filesystem::path& folder, const std::function<void(const CampaignPlan&)>& begin,
                        const std::function<void(Run&&)>& take);
 
-/// The same of one of many files of one plan, which is read only where the file's is another.
+/// Reads the runs of one of many files of one plan. The plan in the file is read only if its checksum differs.
 /// @param checksum stored_plan_checksum() of a file that has the plan
 void read_runs_of(const CampaignPlan& plan, const std::string& checksum, const std::filesystem::path& folder,
                   const std::function<void(Run&&)>& take);

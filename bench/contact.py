@@ -92,9 +92,10 @@ def main():
     parser.add_argument("--time-limit", type=float, default=10)
     options = parser.parse_args()
     print("# Touching on purpose, and hovering near\n")
-    print(f"`bench/contact.py --seeds {options.seeds} --runs {options.runs} --time-limit {options.time_limit:g}` plans "
+    commit = subprocess.run([f"{TREE}/bench/source_commit.sh"], capture_output=True, text=True, check=True).stdout.strip()
+    print(f"Commit {commit}. `bench/contact.py --seeds {options.seeds} --runs {options.runs} --time-limit {options.time_limit:g}` plans "
           "the problems of `problems/contact/` with their\nuncertainty, and the same scenes with a hover instead of the "
-          f"touch. Power is the mean over the {HOLD_S} s of the hold, as\nbelieved. The error is the worst mean force "
+          f"touch. Power is the mean over the {HOLD_S} s of the hold, in\nthe nominal world. The error is the worst mean force "
           "of a second of all plans, in the nominal world. Flights in worlds are those of\n`downwash validate`, over all plans "
           "that fly well in the nominal world, certified or not.\n")
     print("| | power W | force error N | certified | failed in worlds |")

@@ -79,7 +79,7 @@ def main():
     parser.add_argument("--time-limit", type=float, default=10)
     given = parser.parse_args()
     program = given.program.resolve()
-    commit = subprocess.run(["git", "-C", TREE, "describe", "--always", "--dirty"], capture_output=True, text=True, check=True)
+    commit = subprocess.run([f"{TREE}/bench/source_commit.sh"], capture_output=True, text=True, check=True)
     names = sorted(path.name for path in (TREE / "problems").glob("*.yaml"))
     with tempfile.TemporaryDirectory() as work:
         jobs = []

@@ -28,7 +28,7 @@ struct DatabaseError : std::runtime_error {
 
 /// A file of results grows no larger, and larger ones are not read [bytes].
 inline constexpr std::uint64_t max_database_bytes = std::uint64_t{1} << 32U;
-/// The same for one of its texts.
+/// A text in such a file is no longer [bytes].
 inline constexpr int max_database_text_bytes = 1 << 24U;
 
 /// One SQLite file. Every statement is committed at once, unless a Transaction lives. Values are double,

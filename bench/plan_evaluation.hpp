@@ -36,7 +36,7 @@ class PlanEvaluation {
     std::uint64_t world_count_;
     std::shared_ptr<const FlightModel> model_;
     std::shared_ptr<const AeroMap> map_;
-    std::vector<std::string> parameters_;  ///< that are not exact
+    std::vector<std::string> parameters_;  ///< parameters that are not exact
     std::vector<FlownWorld> worlds_;       ///< those drawn; then each parameter at its low and its high quantile
 
     std::mutex free_mutex_;

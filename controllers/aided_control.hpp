@@ -11,7 +11,7 @@
 
 namespace downwash::controllers {
 
-/// What an aided law knows in one tick: see Unaided for what a law asks.
+/// What an aided law knows in one tick. It has the members of Unaided.
 template <class T, dynamics::ThrustRatios<T> Map>
 class Aid {
  public:

@@ -54,8 +54,7 @@ struct Aided {
                       const Memory<T>& memory, const BasicReferencePoint<T>& reference, double tick_s,
                       Actuation<T>& given, const Map& map) const;
 
-    /// How the law asks for the same commands for ever. An observer settles at what is missing in the balance c = Q +
-    /// D.
+    /// The equilibrium of the law. An observer settles at what is missing in the balance c = Q + D.
     [[nodiscard]] Rest<Memory> rest(const PlantModel& nominal, const dynamics::EquationsOfMotion<double>& equations,
                                     RestingCommand command) const;
 };

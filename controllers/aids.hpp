@@ -11,14 +11,14 @@ struct DisturbanceObserver {
 
 /// The map whose thrust ratios a law divides its rotor commands by.
 struct FeedForward {
-    double offset_x_m = 0;  ///< where the map has the surfaces, from where they nominally are
+    double offset_x_m = 0;  ///< displacement of the map's surfaces from their nominal places
     double offset_z_m = 0;
 };
 
-/// What a law has beside its loops.
+/// What a law has beside its loops: an observer, a feed-forward.
 struct Aids {
-    std::optional<DisturbanceObserver> observer;  ///< empty: the law takes its model at its word
-    std::optional<FeedForward> feed_forward;      ///< empty: it knows no surfaces
+    std::optional<DisturbanceObserver> observer;  ///< empty: the law trusts its model
+    std::optional<FeedForward> feed_forward;      ///< empty: the law knows no surfaces
 
     [[nodiscard]] bool are_any() const noexcept { return observer || feed_forward; }
 };

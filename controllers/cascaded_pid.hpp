@@ -20,7 +20,7 @@ struct CascadedPid {
     double horizontal_velocity_kd = 0;     ///< its derivative, of the measured velocity [1]
     double horizontal_integral_limit_m_s2 = 2.0;
 
-    double vertical_position_kp = 2.0;  ///< the same of the height
+    double vertical_position_kp = 2.0;  ///< height error to velocity [1/s]
     double vertical_velocity_kp = 7.5;
     double vertical_velocity_ki = 2.7;
     double vertical_velocity_kd = 0;
@@ -75,7 +75,7 @@ struct CascadedPid {
         return now;
     }
 
-    /// What the law answers to an error of the position along x (axis 0) or z (1) [1/s2].
+    /// Demanded acceleration per metre of position error, along x (axis 0) or z (1) [1/s2].
     [[nodiscard]] double position_stiffness_1_s2(int axis) const {
         return axis_gains(axis).position_kp * axis_gains(axis).velocity_kp;
     }
@@ -91,8 +91,7 @@ struct CascadedPid {
                       const Memory<T>& memory, const BasicReferencePoint<T>& reference, double tick_s,
                       controllers::Actuation<T>& given, Aid&& aid = {}) const;
 
-    /// How the law asks for the same commands for ever: every loop asks the one before it for what its own integral
-    /// does not give.
+    /// The equilibrium of the law: every loop asks the one before it for what its own integral does not give.
     [[nodiscard]] controllers::Rest<Memory> rest(const PlantModel& nominal,
                                                  const dynamics::EquationsOfMotion<double>& equations,
                                                  const controllers::RestingCommand& command) const;

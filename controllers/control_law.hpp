@@ -35,7 +35,7 @@ concept InvertedLaw = requires(const Law& law) {
     { law.inverted() } -> std::convertible_to<FlownLaw>;
 };
 
-/// What flies the robot: the law itself, or for one that is another's gains in other terms that other law.
+/// The law that flights are compiled for: the law itself, or the model inversion that it is in other terms.
 [[nodiscard]] inline FlownLaw flown_law(const ControlLaw& law) {
     return std::visit(
         []<class Law>(const Law& own) -> FlownLaw {
@@ -48,7 +48,7 @@ concept InvertedLaw = requires(const Law& law) {
         law);
 }
 
-/// Calls `fly` with the law as what flies: the law itself, or Aided with what it has beside its loops.
+/// Calls `fly` with the law itself, or with Aided if it has an observer or a feed-forward.
 template <class Fly>
 decltype(auto) visit_flown(const FlownLaw& law, const Fly& fly) {
     return std::visit(
@@ -63,7 +63,7 @@ decltype(auto) visit_flown(const FlownLaw& law, const Fly& fly) {
         law);
 }
 
-/// What the law has beside its loops.
+/// The observer and the feed-forward of a law.
 /// @tparam Any FlownLaw or ControlLaw
 template <class Any>
 [[nodiscard]] Aids aids_of(const Any& law) {
@@ -107,7 +107,7 @@ struct LawMemory {
     });
 }
 
-/// The memory of one law in it.
+/// Reads the memory of one law.
 template <class Law, class T>
 [[nodiscard, gnu::always_inline]] inline typename Law::template Memory<T> recalled(const LawMemory<T>& all) {
     using Memory = typename Law::template Memory<T>;
@@ -118,7 +118,7 @@ template <class Law, class T>
     return own;
 }
 
-/// The reverse, number by number in place: in a tick a copy of the whole costs some percent.
+/// Writes the memory of one law, number by number in place: a copy of the whole costs some percent of a tick.
 template <class T, template <class> class Memory>
 [[gnu::always_inline]] inline void remember(const Memory<T>& memory, LawMemory<T>& all) {
     constexpr int own = number_count<T, Memory<T>>;
@@ -130,7 +130,7 @@ template <class T, template <class> class Memory>
     }
 }
 
-/// The reverse as a value.
+/// The memory of one law as a LawMemory.
 template <class T, template <class> class Memory>
 [[nodiscard, gnu::always_inline]] inline LawMemory<T> remembered(const Memory<T>& memory) {
     LawMemory<T> all;

@@ -17,9 +17,9 @@ namespace downwash::controllers {
     return 1 - 1 / (1 + x * (1 + x * (1.0 / 2 + x * (1.0 / 6 + x * (1.0 / 24)))));
 }
 
-/// The observer in one tick. With p = M u, b = dM/dt u - c, the forces Q that the controller believes to act and the
-/// estimate D, the model expects dp/dt = Q + b + D. D grows by the share of what p misses a tick later over the tick.
-/// The only memory is D - share p / h, less what the model expects: as long as D is right nothing has to be added up.
+/// The observer in one tick. With p = M u, b = dM/dt u - c, the nominal forces Q and the estimate D, the model expects
+/// dp/dt = Q + b + D. D grows by the share of what p misses a tick later over the tick. The only memory is D - share p
+/// / h, less what the model expects: as long as D is right nothing has to be added up.
 template <class T>
 class Observation {
  public:
@@ -33,7 +33,7 @@ class Observation {
         }
     }
 
-    /// D: forces and torques on the coordinates beside those that the controller believes in [N, N, N m, N m].
+    /// D: forces and torques on the coordinates beside the nominal ones [N, N, N m, N m].
     [[nodiscard]] const T* force() const { return force_; }
 
     /// The motion with D among its equations: M du/dt + c - D = Q.
@@ -47,7 +47,7 @@ class Observation {
 
     /// The memory for the next tick. Commands count as they were given, within their limits: what was clipped winds
     /// nothing up. Angles are those of half a tick later at the present speeds.
-    /// @param wrench that the controller believes to act in mid-tick
+    /// @param wrench that the controller expects in mid-tick
     void keep(const dynamics::RotorWrench<T>& wrench, T joint_torque_nm, T kept[4]) const {
         T q[4];
         for (int i = 0; i < 4; ++i) {

@@ -25,7 +25,7 @@ struct EulerTilt {
     T sin_roll, cos_roll, sin_pitch, cos_pitch;
 };
 
-/// As said. @pre angles at most 1e5 rad
+/// Sines and cosines of the roll and pitch of three angles. @pre angles at most 1e5 rad
 template <class T>
 EulerTilt<T> euler_tilt(const EulerAngles<T>& angles) {
     EulerTilt<T> tilt;

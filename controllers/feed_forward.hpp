@@ -16,7 +16,7 @@ struct ReadRatios {
     T body_push;          ///< K_body - 1; 0 without a fountain
 };
 
-/// Below this K a map is not believed: commands stay finite.
+/// The least K that a law takes from a map, so that commands stay finite.
 inline constexpr double min_read_ratio = 0.1;
 
 /// K at the rotors of the vehicle that a law sees.

@@ -18,7 +18,7 @@ struct LyapunovLaw {
     double min_thrust_ratio = 0.1;  ///< least acting thrust that all laws together ask for, of the weight; > 0
 };
 
-/// Roll, pitch and yaw and what they shall do.
+/// The references of roll, pitch and yaw.
 template <class T>
 struct AttitudeTarget {
     LyapunovTarget<T> roll, pitch, yaw;
@@ -102,8 +102,8 @@ struct LyapunovReference {
     LyapunovTarget<T> x, y, z, yaw;
 };
 
-/// All laws one after the other: altitude, position, attitude, rotors. Between position and attitude the rates of the
-/// demanded tilt count as zero, of which the thesis says nothing; the claim about V holds for each law by itself.
+/// All laws one after the other: altitude, position, attitude, rotors. The attitude law takes the rates of the demanded
+/// tilt as zero; the thesis says nothing about them. So V is shown to fall for each law alone, not for all together.
 /// @param state its thrusts are those of the rotors at this moment   @param ceiling_factor see lyapunov_thrusts()
 /// @return the tilt that the position law asked for
 template <class T, class P>
@@ -114,7 +114,8 @@ TiltDemand<T> lyapunov_commands(const BasicSpaceModel<P, 0>& model, const SpaceA
     using dynamics::LaneVector;
     const dynamics::LaneRotation<T> attitude = dynamics::rotation_of(state.q + 3);
     const EulerAngles<T> angles = euler_angles(attitude);
-    // A vehicle that is to fall faster than g, or flies upside down, cannot tilt as the position law asks.
+    // The position law divides by this thrust: it stays positive if the vehicle has to fall faster than g or is upside
+    // down.
     const T least_n = T(law.min_thrust_ratio * standard_gravity_m_s2) * T(model.total_mass_kg);
     const T acting_n =
         lane::max(least_n, altitude_thrust(model, law, state.q[2], state.u[2], attitude.third.z, reference.z));

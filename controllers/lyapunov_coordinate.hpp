@@ -8,10 +8,10 @@ namespace downwash::controllers {
 /// Gains of one coordinate, both > 0 [1/s].
 struct LyapunovGains {
     double k = 1;       ///< gain of the error
-    double k_rate = 1;  ///< k', of the speed's
+    double k_rate = 1;  ///< k', gain of the speed's error
 };
 
-/// What one coordinate shall do: value, speed and acceleration.
+/// The reference of one coordinate: value, speed and acceleration.
 template <class T>
 struct LyapunovTarget {
     T value, rate, acceleration;
@@ -30,7 +30,7 @@ LyapunovErrors<T> lyapunov_errors(const LyapunovGains& gains, const T& error, co
     return {error, rate - target.rate + T(gains.k) * error};
 }
 
-/// V.
+/// The Lyapunov function V.
 template <class T>
 T lyapunov_function(const LyapunovErrors<T>& errors) {
     return T(0.5) * (errors.e * errors.e + errors.e_rate * errors.e_rate);

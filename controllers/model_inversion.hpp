@@ -75,10 +75,10 @@ struct ModelInversion {
         return now;
     }
 
-    /// What the law answers to an error of the position along x (axis 0) or z (1) [1/s2].
+    /// Demanded acceleration per metre of position error, along x (axis 0) or z (1) [1/s2].
     [[nodiscard]] double position_stiffness_1_s2(int axis) const { return axis_gains(axis).kp; }
 
-    /// What comes of one control step before any limit.
+    /// The result of one control step before any limit.
     template <class T>
     struct Step {
         controllers::Demand<T> demand;
@@ -113,8 +113,8 @@ struct ModelInversion {
                                    const dynamics::Motion<T>& motion, const Memory<T>& memory,
                                    const BasicReferencePoint<T>& reference, T dt_s) const;
 
-    /// How the law asks for the same commands for ever, worked out from the last block of figure C.2 to the first. It
-    /// knows nothing of surfaces, and asks for accelerations that never come.
+    /// The equilibrium of the law, worked out from the last block of figure C.2 to the first. The law does not know the
+    /// surfaces, so it asks for accelerations that never come.
     /// @param balance equations of the level vehicle at rest
     [[nodiscard]] controllers::Rest<Memory> rest(const PlantModel& nominal,
                                                  const dynamics::EquationsOfMotion<double>& balance,

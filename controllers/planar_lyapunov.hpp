@@ -16,8 +16,8 @@ struct PlanarLyapunov {
     static constexpr const char* name = "lyapunov";
 
     double horizontal_k = 1.1;       ///< gain of the error along x
-    double horizontal_k_rate = 1.1;  ///< k', of the speed's
-    double vertical_k = 3.4;         ///< the same of the height
+    double horizontal_k_rate = 1.1;  ///< k', gain of the speed's error
+    double vertical_k = 3.4;         ///< gain of the error along z
     double vertical_k_rate = 3.4;
     double pitch_k = 5.2;  ///< gain of the pitch against the tilt that x and z ask for
     double pitch_k_rate = 5.2;
@@ -28,7 +28,7 @@ struct PlanarLyapunov {
 
     double rotor_lead = 0;  ///< see controllers::limit_rotors()
 
-    controllers::Aids aids;  ///< observer, and the feed-forward that has the part of K_c
+    controllers::Aids aids;  ///< observer, and the feed-forward in the place of K_c
 
     double max_tilt_rad = 0.6108652381980153;  ///< 35 degrees: the pitch reference is clipped to this
     double min_vertical_force_ratio = 0.2;     ///< least vertical force over the weight

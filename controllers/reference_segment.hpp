@@ -60,8 +60,7 @@ class DOWNWASH_EXPORT ReferenceSegment {
     /// The reference at the beginning of tick `tick`, 0 <= tick <= ticks(); exactly `from` and `to` at the ends.
     [[nodiscard]] ReferencePoint at_tick(std::int64_t tick) const noexcept;
 
-    /// The largest jerk in (x, z) at its ends and at samples between them (less than the largest of all by 1 % at
-    /// most) [m/s^3].
+    /// The largest jerk in (x, z) at its ends and at samples between them, at most 1 % below the true maximum [m/s^3].
     [[nodiscard]] double peak_jerk_m_s3() const noexcept;
 
     /// How fast the direction of a + g turns at the beginning of a tick, 0 <= tick <= ticks() [rad/s]; infinite where

@@ -29,7 +29,7 @@ struct RestingCommand {
     double known_force[4] = {};  ///< what else acts by what the law knows [N, N, N m, N m]: see Unaided::force()
 };
 
-/// A control law that asks for these commands for ever.
+/// The equilibrium of a control law: what it remembers and is given when it asks for these commands for ever.
 template <template <class> class Memory>
 struct Rest {
     HoldLimit limit = HoldLimit::none;  ///< why the law cannot; then the rest of this is of no use

@@ -94,7 +94,7 @@ class TouchingSurroundings {
     double body_ratio_, wall_nearness_;
 };
 
-/// A quarter of a radian of the fastest vibration against the surface.
+/// The longest step in contact [s]: a quarter of a radian of the fastest vibration against the surface.
 inline double longest_step_s(const PlantModel& model, const PlanarContact& contact) {
     double mobility = 0;  // what a newton at a point does to its velocity: bounds, of a vehicle whose arm is free
     if (contact.is_end_effector) {

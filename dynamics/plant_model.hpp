@@ -16,12 +16,12 @@ struct PlantStructure {
     bool has_walls;      ///< walls beside the vehicle push it and turn it
     bool has_rotor_lag;  ///< without it thrust follows the command at once
     bool has_drag;       ///< whether the multirotor or the arm has drag
-    /// What a wall does that a rotor touches, over the free-air thrust: a force away from it, and a moment [m] by which
-    /// the side towards it sinks.
+    /// Effect of a wall that a rotor touches, per newton of free-air thrust: a force away from it, and a moment [m]
+    /// that lowers the side towards it.
     double wall_force, wall_moment_m;
 };
 
-/// What may differ from lane to lane. Nothing but T: see base/numbers.hpp.
+/// The numbers that may differ from lane to lane. Nothing but T: see base/numbers.hpp.
 template <class T>
 struct PlantNumbers {
     T multirotor_mass_kg, arm_mass_kg, total_mass_kg;

@@ -69,7 +69,7 @@ EquationsOfMotion<T> equations_of_motion(const BasicPlantModel<P>& model, const 
     return e;
 }
 
-/// All of the above at one instant.
+/// Attitude and equations of motion at one instant.
 template <class T>
 struct Motion {
     Attitude<T> attitude;

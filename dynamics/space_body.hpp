@@ -13,10 +13,10 @@
 
 namespace downwash::dynamics {
 
-/// Coordinates of a plant with n joints.
+/// Number of coordinates of a plant with n joints.
 template <int n>
 inline constexpr int space_coordinates = 7 + n;
-/// Its speeds.
+/// Number of speeds of a plant with n joints.
 template <int n>
 inline constexpr int space_speeds = 6 + n;
 

@@ -34,7 +34,7 @@ struct SpaceRotorNumbers {
     T spin_kg_m2_s_n0p5;  ///< angular momentum about its axis per square root of free-air thrust
 };
 
-/// What may differ from lane to lane. Nothing but T: see base/numbers.hpp.
+/// The numbers that may differ from lane to lane. Nothing but T: see base/numbers.hpp.
 template <class T, int n>
 struct SpaceNumbers {
     T multirotor_mass_kg, total_mass_kg, inverse_mass_1_kg;

@@ -18,7 +18,7 @@ concept SpaceSurroundings = requires(const S& around, const LaneVector<T>& hub_m
     around.add_load(q, q, attitude, wrench);
 };
 
-/// Nothing but air. What surrounds a vehicle otherwise hides the members that it changes.
+/// Nothing but air. Other surroundings derive from this and hide the members that they change.
 struct CalmSpace {
     template <class T>
     T thrust_ratio(int /*rotor*/, const LaneVector<T>& /*hub_m*/) const {

@@ -36,7 +36,7 @@ concept Surroundings = ThrustRatios<S, T> &&
     around.add_load(q, q, attitude, force);
 };
 
-/// Still air far from everything. What surrounds a vehicle otherwise hides the members that it changes.
+/// Still air far from everything. Other surroundings derive from this and hide the members that they change.
 template <class T>
 struct CalmSurroundings {
     T thrust_ratio(int /*rotor*/, const PlanePoint<T>& /*hub_m*/, const T& /*sin_pitch*/) const { return T(1); }

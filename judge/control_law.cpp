@@ -108,7 +108,7 @@ struct ControlLaw::Read {
     double fountain = 0;
 };
 
-/// What the controller believes of its rotors in mid-tick.
+/// What the controller expects of its rotors in mid-tick.
 struct ControlLaw::Rotors {
     double thrust_n = 0, pitch_torque_nm = 0;
     bool are_clipped = false;

@@ -10,7 +10,7 @@ namespace downwash::simulation {
 /// The reach of what can touch an obstacle.
 [[nodiscard]] MotionReach motion_reach(const FlightModel& model) noexcept;
 
-/// No point of the robot's surface moves farther between two poses whose coordinates all change evenly [m].
+/// A bound on how far any point of the robot's surface moves between two poses whose coordinates change evenly [m].
 [[nodiscard]] double motion_m(const FlightModel& model, const PlanarPose& from, const PlanarPose& to) noexcept;
 
 /// Whether the robot is nearer than a margin to an obstacle at some pose between two poses at which it is not. Checks

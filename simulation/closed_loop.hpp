@@ -30,7 +30,7 @@ template <class T, class Law, EffectField<T> Field>
 }
 
 /// One control tick, a pure function: the controller reads the state, its commands are held while the plant moves.
-/// @param law that of the model, as what flies: what runs tick by tick calls controllers::visit_flown() once
+/// @param law the model's law, as controllers::visit_flown() hands it out
 /// @param motion that of the state   @param[out] given what the controller commanded
 /// @param integrate how the plant moves: see dynamics/integration.hpp
 template <class T, class Law, EffectField<T> Field, class Integrate = dynamics::OneStep>
@@ -44,8 +44,8 @@ VehicleState<T> tick(const TickModel& model, const Law& law, const VehicleState<
     return next;
 }
 
-/// One control tick in a world that is not what the controller takes it for, perhaps a different one in every lane. In
-/// the world without any difference it is tick() to the last bit.
+/// One control tick in a world that differs from the nominal one; every lane may have a world of its own. In the
+/// nominal world it is tick() to the last bit.
 /// @param noise standard normal numbers of this tick   @param integrate see tick()
 template <class T, class Law, EffectField<T> Field, class Integrate = dynamics::OneStep>
 State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumbers<T>& world, const T noise[noise_count],
@@ -58,7 +58,7 @@ State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumber
     BasicPlantModel<T> plant;
     static_cast<PlantStructure&>(plant) = model.plant;
     static_cast<PlantNumbers<T>&>(plant) = world.plant;
-    // The plant moves about its centre of mass, all others follow the point that the robot file calls so.
+    // The plant moves about its true centre of mass; states refer to the centre of mass of the robot file.
     dynamics::PlantState<T> moving = state.plant;
     const auto motion = dynamics::motion_at(plant, moving.q, moving.u);
     const auto shift = [&](dynamics::PlantState<T>& by, const dynamics::Attitude<T>& a, T sign) {

@@ -23,11 +23,11 @@ struct ContactGoal {
     std::optional<double> x_m, z_m;  ///< Where on it, along the plane; empty: anywhere.
     double tolerance_m = 0.1;        ///< Tolerance of the place from which the robot touches, > 0.
     std::optional<double>
-        force_tolerance_n;    ///< What the mean over a second may be off by, > 0; empty: a fifth of the force.
+        force_tolerance_n;    ///< Allowed error of the mean over a second, > 0; empty: a fifth of the force.
     double standoff_m = 0.3;  ///< Distance from the surface before and after, > 0.
     double speed_m_s = 0.1;   ///< Speed of approach and leaving, > 0.
 
-    /// What the force may be off by [N].
+    /// The allowed error of the mean force over a second [N].
     [[nodiscard]] double tolerance_n() const noexcept { return force_tolerance_n.value_or(0.2 * force_n); }
 };
 
@@ -43,7 +43,7 @@ struct Touch {
     std::vector<PlaneVector>
         frame_points_m;            ///< What of the multirotor touches, in the body frame; none: the end effector.
     double force_n = 0;            ///< Normal force that is held.
-    double force_tolerance_n = 0;  ///< What the mean over a second may be off by.
+    double force_tolerance_n = 0;  ///< Allowed error of the mean over a second.
     double standoff_m = 0;         ///< Distance from the surface, before and after.
     double speed_m_s = 0;          ///< Speed of approach and leaving.
     double hold_s = 0;             ///< How long the force is held.
@@ -64,9 +64,9 @@ struct TouchRecord {
 
 /// How fast the reference takes up an error of the force: a share of the natural frequency of the position loop.
 inline constexpr double force_loop_share = 0.4;
-/// Time constants of that for which the force settles before its hold begins.
+/// How many time constants of that loop the force settles for before its hold begins.
 inline constexpr double touch_settling_constants = 5;
-/// How long the robot hovers afterwards where it touched from [s].
+/// How long the robot hovers after a touch, in the place from which it touched [s].
 inline constexpr double touch_leaving_s = 8;
 /// How long the robot has to be free of the surface until it stops pulling [s].
 inline constexpr double touch_free_s = 0.1;

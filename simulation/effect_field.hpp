@@ -10,8 +10,7 @@
 
 namespace downwash::simulation {
 
-/// The effects of surfaces on a level vehicle, where the controller believes the surfaces: a field over the plane of
-/// motion [m].
+/// The effects of surfaces in their nominal places on a level vehicle: a field over the plane of motion [m].
 /// - `at_rotor(rotor, x_m, z_m)`: K by side of a rotor with its hub there
 /// - `same_as(rotor)`: the earliest rotor that is known to have the same K, perhaps that rotor itself
 /// - `at_body(x_m, z_m)`: K by side of the body with the centre between its rotors there, where there is a fountain
@@ -45,7 +44,7 @@ struct NoEffect {
     [[gnu::always_inline]] NoEffect& as_read() noexcept { return *this; }
 };
 
-/// An EffectField for one flight at a time, whichever it is.
+/// Any EffectField, chosen at run time, for one flight at a time.
 class FlightEffect {
  public:
     virtual ~FlightEffect() = default;

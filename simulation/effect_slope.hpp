@@ -33,13 +33,13 @@ class LinearEffect final : public FlightEffect {
         }
     };
 
-    /// @param offset_x_m,offset_z_m how far from the vehicle's own places the tangents are taken, backwards
+    /// @param offset_x_m,offset_z_m displacement of the surfaces
     LinearEffect(const FlightModel& model, const PlanarPose& pose, double offset_x_m, double offset_z_m);
 
     Tangent rotor_[max_rotors] = {};
     Tangent body_ = {};
-    Tangent walls_ = {};                  ///< 1 more than how near walls are
-    std::unique_ptr<LinearEffect> read_;  ///< where a law reads elsewhere
+    Tangent walls_ = {};                  ///< wall nearness + 1
+    std::unique_ptr<LinearEffect> read_;  ///< effect that the law reads, if its map is displaced
 };
 
 }  // namespace downwash::simulation

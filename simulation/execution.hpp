@@ -38,10 +38,10 @@ inline constexpr std::array all_outcomes{Outcome::ok,          Outcome::collisio
 /// How a flight that ended early for this reason counts; `unstable` where no other outcome says why.
 [[nodiscard]] DOWNWASH_EXPORT Outcome outcome_of(Rejection rejection);
 
-/// No number of a flight is larger in size, infinite clearances apart: beyond, it says nothing about a vehicle, and a
-/// flight that comes to such a number is unstable. So is no number of a file of results.
+/// The largest magnitude of a number of a flight or of a file of results, infinite clearances apart. A flight with a
+/// larger one counts as unstable.
 inline constexpr double max_result = 1e30;
-/// No number of a vehicle's state is larger in size, so that what follows from it is within max_result.
+/// The largest magnitude of a number of a vehicle's state; what follows from it is then within max_result.
 inline constexpr double max_state = 1e20;
 
 /// The vehicle at one control tick and the commands it holds until the next; SI units, plane coordinates.
@@ -97,7 +97,7 @@ struct Execution : FlightSums {
 /// @param start vehicle at the first knot   @param knots at least one, ticks rising from 0
 /// @param goals at least one, in the order of the visits. The vehicle hovers at the last one after the last knot. It
 /// hovers at each other one between two knots that are the same point at rest, meet the goal, and are at least its hold
-/// apart. Where it does not hover at all of those, it hovers after the last knot for the first that is left
+/// apart. If such a hover is missing, the one after the last knot counts for the first goal without a hover
 /// @param aero false flies as if there were no surface effects (and no flyable area)
 /// @param in the world of the flight; of its ceiling part only the model is asked
 /// @param energy_budget_j a flight that takes more ends `over_budget` where it would end `ok`

@@ -16,9 +16,9 @@ enum class Instructions : std::uint8_t {
     avx512,    ///< x86-64 only: AVX-512 F
 };
 
-/// The sets that this build and this processor have, the widest last.
+/// The instructions that this build and this processor have, the widest last.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const Instructions> known_instructions() noexcept;
-/// The widest of them.
+/// The widest of the known instructions.
 [[nodiscard]] inline Instructions best_instructions() noexcept {
     return known_instructions().back();
 }
@@ -38,14 +38,14 @@ class DOWNWASH_EXPORT FlightPool {
     FlightPool(const FlightPool&) = delete;
     FlightPool& operator=(const FlightPool&) = delete;
 
-    /// Not to be called from two threads at once.
+    /// Flies the jobs. No two threads may call this at once.
     void fly(std::span<FlightJob> jobs);
 
     /// Sets how many of its threads the next batches use: at least 1, the calling one included. You may call this from
     /// any thread, also during a batch.
     void use_threads(int threads);
 
-    /// As given to the constructor.
+    /// The rules given to the constructor.
     [[nodiscard]] const FlightRules& rules() const noexcept;
 
  private:

@@ -22,7 +22,7 @@ struct FlightJob {
     /// The vehicle must meet the goal in this many last ticks of the last leg, and in the state before them. Otherwise
     /// the flight is rejected as goal_missed. 0: no goal.
     std::int64_t judged_ticks = 0;
-    /// In which it is flown; nullptr: the nominal one. Must outlive the flight.
+    /// World of the flight; nullptr: the nominal one. Must outlive the flight.
     const FlownWorld* world = nullptr;
     std::int64_t first_tick = 0;  ///< see FlightWorld
     const Goal* goal = nullptr;   ///< instead of the pool's; must outlive the flight

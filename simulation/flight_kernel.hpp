@@ -54,13 +54,13 @@ struct alignas(64) FlightLanes {
 /// What a lane's flight does not change.
 struct FlightKernelModel {
     const TickModel* tick;
-    const void* law;  ///< law of the tick; the kernel knows its type, and whether it flies Aided
+    const void* law;  ///< law of the tick, of the type that the kernel was compiled for
     RuleLimits limits;
     MotionReach reach;  ///< how far a motion moves any point of the robot, hubs included
     bool has_map;
     RotorMaps maps;
-    bool is_in_worlds;  ///< some flight needs what WorldNumbers says
-    bool has_noise;     ///< some world has
+    bool is_in_worlds;  ///< whether some flight needs tick_in_world()
+    bool has_noise;     ///< whether some world has noise
     const float* normal_levels;
 };
 

@@ -26,7 +26,7 @@ struct EffectLayers {
     std::optional<std::size_t> of_body;   ///< empty without a fountain
     std::optional<std::size_t> of_walls;  ///< empty without walls
 };
-/// Those of a vehicle in a scene; rotors that share offset and effect share a layer.
+/// The layers of a vehicle in a scene. Rotors that share offset and effect share a layer.
 /// @param heading_rad of the plane of motion, for the models that see a rotor's neighbours, and for walls
 [[nodiscard]] DOWNWASH_EXPORT EffectLayers effect_layers(const RotorParameters& rotors,
                                                          const std::shared_ptr<const Scene>& scene,
@@ -117,7 +117,7 @@ struct FlightWorld {
     std::int64_t first_tick = 0;        ///< control tick, from the start of the whole flight, with which it begins
 };
 
-/// The world in which to fly tick by tick; nullptr where that is the nominal one and the plain tick does.
+/// The world to fly in tick by tick; nullptr if the plain tick suffices.
 [[nodiscard]] inline const FlownWorld* flown_world(const FlightModel& model, const FlownWorld* world) noexcept {
     return world != nullptr || model.flies_plainly() ? world : &model.nominal_world();
 }
@@ -134,7 +134,7 @@ struct FlightWorld {
 /// Every rotor position that a vehicle within the bounds can reach, at any pitch.
 [[nodiscard]] DOWNWASH_EXPORT Bounds rotor_extent(const RotorParameters& rotors, const Bounds& bounds);
 
-/// The pose whose collisions a state stands for.
+/// The pose of a state, for collision checks.
 [[nodiscard]] inline PlanarPose pose_of(const FlightState& state) noexcept {
     return pose_of(state.plant.q);
 }

@@ -38,11 +38,10 @@ struct EndEffectorGoal {
 /// problems/goal_kinds.cpp, the judge in judge/goals.cpp. The compiler names the answers that a new kind lacks.
 using GoalKind = std::variant<ConfigurationGoal, EndEffectorGoal, ContactGoal>;
 
-/// Where the flight must end and stay. One that nobody filled in is a configuration that is free in every coordinate,
-/// which is an error.
+/// Where the flight must end and stay. A default Goal leaves every coordinate free, which is an error.
 struct Goal {
-    GoalKind kind;      ///< Says nothing where there are alternatives, but for a contact.
-    double hold_s = 5;  ///< The last reference point is held for so long, >= 1.
+    GoalKind kind;      ///< Unused if there are alternatives, unless it is a contact.
+    double hold_s = 5;  ///< How long the last reference point is held, >= 1.
     /// Alternatives: the vehicle must reach one of them and hold it as long as that one says; not nested. Those of a
     /// contact are the places from which the robot can touch, which with_touches() finds.
     std::vector<Goal> any_of;

@@ -43,7 +43,7 @@ struct HoverStability {
 struct HoverAnalysis {
     HoldVerdict verdict = HoldVerdict::not_flyable;
     HoverTrim trim;            ///< from no_equilibrium on
-    HoverStability stability;  ///< from unstable on; for unknown without what the model does not know
+    HoverStability stability;  ///< from unstable on; for unknown, as if the model were complete
 };
 
 /// Whether the vehicle can hover with its centre of mass at (x, z) and the arm at an angle, with surface effects

@@ -21,7 +21,7 @@ inline constexpr std::array all_loop_inputs{LoopInput::thrust, LoopInput::pitch_
 /// How far a loop is from instability.
 struct LoopMargins {
     double gain_margin_db = 0;    ///< least change of the gain, up or down, that makes it unstable; infinite: none
-    double phase_margin_rad = 0;  ///< least lag, or lead, that does at a gain of 1; infinite: the gain is never 1
+    double phase_margin_rad = 0;  ///< least lag, or lead, that makes it unstable; infinite: the gain is never 1
     double crossover_rad_s = 0;   ///< greatest frequency at which the gain is 1; 0: none
     double delay_margin_s = 0;    ///< least further delay that makes it unstable by its phase margins
 };

@@ -6,13 +6,13 @@ namespace downwash::simulation {
 
 /// How far from the multirotor's centre of mass the points of a robot are [m].
 struct MotionReach {
-    double body_m;   ///< those of the multirotor, at most
+    double body_m;   ///< the multirotor's farthest point
     double joint_m;  ///< the joint
-    double arm_m;    ///< the arm's, from the joint, at most
+    double arm_m;    ///< the arm's farthest point, from the joint
 };
 
-/// No point of the robot moves farther between two poses (x, z, pitch, arm) whose coordinates all change evenly [m].
-/// One template over the lane type.
+/// A bound on how far any point of the robot moves between two poses (x, z, pitch, arm) whose coordinates change evenly
+/// [m]. One template over the lane type.
 template <class T>
 T motion_m(const MotionReach& reach, const T from[4], const T to[4]) {
     const T dx = to[0] - from[0];

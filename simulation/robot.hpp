@@ -27,7 +27,7 @@ struct Robot {
 
     /// Total mass [kg].
     [[nodiscard]] double mass_kg() const noexcept { return multirotor.mass_kg + arm.mass_kg; }
-    /// What of it can touch an obstacle.
+    /// The parts of the robot that can touch an obstacle.
     [[nodiscard]] RobotShape shape() const { return {body, arm.joint_x_m, arm.joint_z_m, arm.length_m, arm.radius_m}; }
 };
 

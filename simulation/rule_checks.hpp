@@ -24,7 +24,7 @@ struct RuleLimits {
     double max_pitch_rate_rad_s;
 };
 
-/// Those of a flight with this arm. An arm that does not move has no limits to leave: its joint only holds it.
+/// The limits of a flight with this arm. An arm that does not move has no limits to leave: its joint only holds it.
 inline RuleLimits rule_limits(const FlightRules& rules, const ArmParameters& arm) noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     const bool has_limits = arm.is_limited && arm.lower_limit_rad < arm.upper_limit_rad;

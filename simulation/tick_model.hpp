@@ -8,7 +8,7 @@ namespace downwash::simulation {
 
 /// Everything about the vehicle that does not change in flight.
 struct TickModel {
-    PlantModel plant;  ///< what the controller knows, and what flies unless somebody says otherwise
+    PlantModel plant;  ///< nominal plant: the controller knows it, and it flies in the nominal world
     FlownLaw law;
     double tick_s;  ///< control period, 1 / rate_hz
     TiltLoss tilt_loss = {};

@@ -14,8 +14,7 @@
 
 namespace downwash::simulation {
 
-/// A pose as the obstacles see it that are not touched: a little farther from the surface than the deepest point is in
-/// it.
+/// The pose at which to check the obstacles that are not touched: moved out of the surface, and a little farther.
 [[nodiscard]] inline PlanarPose off_surface(PlanarPose pose, const Touch& touch, double depth_m) {
     constexpr double air_m = 5e-4;
     const double back_m = std::max(0.0, depth_m + air_m);

@@ -7,8 +7,8 @@ namespace downwash {
 /// How well the numbers of vehicle, sensors, surfaces and air are known. A robot file may state those of vehicle and
 /// sensors. docs/model.md 9 says where the defaults come from; simulation/world_parameters.hpp has the keys.
 struct Uncertainty {
-    // Relative to K - 1: the scatter of all measurements about the default models (docs/aeromap.md). A normal
-    // distribution of the ground's would turn lift into suction; a uniform one of that standard deviation does not.
+    // Relative to K - 1: the scatter of all measurements about the default models (docs/aeromap.md). For the ground, a
+    // normal distribution would turn lift into suction; a uniform one of that standard deviation does not.
     Spread ceiling_scale = Spread::of_sd(0.15);
     Spread ground_scale = Spread::over(-0.8, 0.8);
     Spread scene_x_m = Spread::of_sd(0.02);

@@ -9,8 +9,8 @@
 
 namespace downwash {
 
-/// What neither controller nor planner knows, in one world: the differences from the nominal numbers. All zero is the
-/// nominal world. docs/model.md 9 says what each of them changes.
+/// A world: its differences from the nominal numbers, unknown to controller and planner. All zero is the nominal world.
+/// docs/model.md 9 says what each of them changes.
 struct World {
     double ceiling_scale = 0;  ///< Relative change of K - 1 under surfaces.
     double ground_scale = 0;   ///< Relative change of K - 1 over surfaces.
@@ -39,7 +39,7 @@ struct World {
     double gust_length_x_m = 1;  ///< Length scales of the gusts.
     double gust_length_z_m = 1;
 
-    std::uint64_t tape = 0;  ///< Which noise and which gusts.
+    std::uint64_t tape = 0;  ///< Selects the noise and the gusts.
 };
 
 /// A world as the tick needs it.
@@ -49,7 +49,7 @@ struct FlownWorld {
     bool has_noise;  ///< Noise in what the controller sees, or gusts.
 };
 
-/// A world in numbers.
+/// Prepares a world for the tick.
 /// @pre robot_errors(robot) is empty; scales are above -1, the rotors' time constant stays at least half a tick where
 /// the robot has a lag, and the delay stays within 0 and simulation::max_delay_ticks
 [[nodiscard]] DOWNWASH_EXPORT FlownWorld make_world(const Robot& robot, const World& world);
@@ -57,7 +57,7 @@ struct FlownWorld {
 /// A world without its noise and gusts.
 [[nodiscard]] DOWNWASH_EXPORT FlownWorld without_noise(const FlownWorld& world) noexcept;
 
-/// What a world remembers as a flight begins: the vehicle was always as it is, and gusts blow already.
+/// What a world remembers as a flight begins: the vehicle was always in this state, and gusts blow already.
 [[nodiscard]] DOWNWASH_EXPORT simulation::WorldMemory<double> memory_at_start(
     const FlownWorld& world, const dynamics::PlantState<double>& state) noexcept;
 

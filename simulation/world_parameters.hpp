@@ -36,7 +36,7 @@ struct WorldParameter {
     int rotor = 0;
     DangerQuantiles danger = {};
 
-    /// What a world has.
+    /// The parameter's value in a world.
     [[nodiscard]] double of(const World& world) const noexcept {
         return value != nullptr ? world.*value : world.rotor_thrust_scale[rotor];
     }

@@ -34,7 +34,7 @@ class ClosedLoopOde {
     };
 
     /// @param map surface effects; nullptr for none. Both outlive this object.
-    /// @param world what the plant has otherwise than the controller believes: masses, inertias, centre of mass, thrust
+    /// @param world differences of the plant from the nominal one: masses, inertias, centre of mass, thrust
     /// of all rotors and of each, K - 1 (its change below surfaces, for the whole map), place of the scene. Lag, delay,
     /// drag with its wind, bias and noise are unknown to this model. nullptr: nothing; it outlives this object
     ClosedLoopOde(const FlightModel& model, const AeroMap* map, const FlownWorld* world = nullptr)

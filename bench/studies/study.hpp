@@ -27,7 +27,7 @@ struct Figure {
 struct Table {
     std::string name;  ///< name of its file, without extension
     std::string caption;
-    std::vector<std::string> columns;            ///< with units
+    std::vector<std::string> columns;            ///< names of the columns, with units
     std::vector<std::vector<std::string>> rows;  ///< as many cells each
 };
 

@@ -18,7 +18,7 @@ struct StudySettings {
     std::optional<std::uint64_t> jobs;  ///< searches at a time; empty: one per processor
 };
 
-/// A campaign of the study: what its planners believe, and in whose worlds their plans are flown.
+/// A campaign of the study: what its planners assume, and in whose worlds their plans are flown.
 struct StudyPart {
     std::string name;     ///< name of its folder: "worlds_8"
     std::string setting;  ///< what is uncertain where plans are flown: "problem's own", "CAMP's"
