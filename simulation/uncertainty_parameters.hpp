@@ -9,7 +9,7 @@
 namespace downwash {
 
 /// Adds a key below `uncertainty` to the table of a Model that has an Uncertainty.
-/// @param uncertainty names it: (auto& model) -> auto&
+/// @param key without a spread: the group itself   @param uncertainty gives that of a model: (auto& model) -> auto&
 template <class Model, class Member>
 void add_uncertainty_row(std::vector<Parameter<Model>>& rows, const UncertaintyKey& key, Member uncertainty) {
     const std::string path = "uncertainty." + std::string(key.path);

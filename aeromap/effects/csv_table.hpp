@@ -15,7 +15,7 @@ namespace downwash {
 [[nodiscard]] std::optional<std::size_t> index_of(const std::vector<std::string>& columns, std::string_view column);
 
 /// Comma-separated text. Empty lines and lines that begin with `#` are skipped. The first other line names the columns,
-/// and the following ones have as many cells each. There are no quotes. Spaces around cells are ignored.
+/// and the following ones have as many cells each. Quoting is not supported. Spaces around cells are ignored.
 struct CsvTable {
     struct Row {
         std::size_t line;
@@ -34,7 +34,7 @@ struct CsvTable {
 /// @throws InputError if the text is not a table, through `errors`
 [[nodiscard]] CsvTable parse_csv(std::string_view text, LineErrors& errors);
 
-/// The number in a cell; empty, and an error in the row's line, if it is not a number in [low, high].
+/// The number in a cell. If it is not a number in [low, high], returns nothing and adds an error for the row's line.
 [[nodiscard]] std::optional<double> number_in(const CsvTable& table, const CsvTable::Row& row, std::size_t column,
                                               double low, double high, LineErrors& errors);
 

@@ -52,13 +52,14 @@ struct EffectModelInfo {
 /// The model of that name; nullptr if there is none.
 [[nodiscard]] DOWNWASH_EXPORT const EffectModelInfo* find_effect_model(std::string_view name);
 
-/// What the image of a rotor takes of the induced velocity of another one, `distance_radii` beside it, over a wide flat
-/// surface: (1/2) zeta / (d^2 + 4 zeta^2)^1.5 (thesis (2.14)); 1 / (16 zeta^2) of its own velocity at distance 0.
+/// The part of a rotor's induced velocity that the image of another one, `distance_radii` beside it, cancels over a
+/// wide flat surface: (1/2) zeta / (d^2 + 4 zeta^2)^1.5 (thesis (2.14)); 1 / (16 zeta^2) of its own velocity at
+/// distance 0.
 [[nodiscard]] DOWNWASH_EXPORT double image_loss(double z_over_r, double distance_radii);
 
-/// K of a wide flat surface at distance `z_over_r` >= 0 as the formula or table says, not clamped; infinite from a
-/// formula's pole downwards. The multirotor models see the other rotors in `neighbours`; `multirotor_body` gives the
-/// whole vehicle's K (thesis (2.17)). @pre the effect's table is there if the model is `table`
+/// K of a wide flat surface at distance `z_over_r` >= 0 as the formula or table says, not clamped; infinite at a
+/// formula's pole and below. The multirotor models see the other rotors in `neighbours`; `multirotor_body` gives the
+/// whole vehicle's K (thesis (2.17)). @pre the effect has a table if the model is `table`
 [[nodiscard]] DOWNWASH_EXPORT double formula_factor(const SurfaceEffect& effect, double z_over_r,
                                                     const RotorNeighbours& neighbours = {});
 

@@ -18,8 +18,8 @@ struct WallMeasurement {
 };
 
 /// Reads such measurements from a CSV file: lines that begin with `#` are comments, then a header with
-/// `distance_over_r` (in [1, 1000]), `force_over_thrust` and `moment_over_thrust_radius` (in [-10, 10]), perhaps
-/// `facility`, and any others. At most 100000 rows and 16 MB.
+/// `distance_over_r` (in [1, 1000]), `force_over_thrust` and `moment_over_thrust_radius` (in [-10, 10]), optionally
+/// `facility`; other columns are ignored. At most 100000 rows and 16 MiB.
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT std::vector<WallMeasurement> read_wall_measurements(const std::filesystem::path& file);
 

@@ -41,17 +41,17 @@ void add_json(Command command, bool& as_json, const std::string& detail = "");
 void add_quiet(Command command, bool& is_quiet);
 void add_no_cache(Command command, bool& no_cache);
 void add_threads(Command command, int& threads);
-/// @param otherwise says how many there are without the option
+/// @param otherwise how many there are without the option, in words
 void add_jobs(Command command, std::optional<std::uint64_t>& jobs, const std::string& otherwise);
-/// --wall-limit. @param detail what happens then
+/// --wall-limit. @param detail what happens when the limit is reached
 void add_wall_limit(Command command, std::optional<double>& limit_s, const std::string& detail);
-/// What it takes: see plan_file().
+/// Its value: see plan_file().
 Option add_plan(Command command, std::string& plan);
-/// What it takes: see run_folder().
+/// Its value: see run_folder().
 Option add_run(Command command, std::string& folder);
 /// See arm_option().
 Option add_arm(Command command, std::optional<double>& arm_deg);
-/// --pilot. @param needs what it stands beside
+/// --pilot. @param needs which option it requires, for the help
 void add_pilot(Command command, std::optional<std::string>& folder, const std::string& needs);
 void add_width(Command command, std::optional<int>& width_px);
 void add_no_labels(Command command, bool& no_labels);
@@ -62,7 +62,7 @@ Option add_out(Command command, const std::string& placeholder, Value& out, cons
     return command.add_option("-o,--out " + placeholder, out, meaning_and("where to write", detail));
 }
 
-/// --at with so many coordinates, as often as wanted.
+/// --at with `size` coordinates; it may be repeated.
 template <std::size_t size>
 Option add_points(Command command, std::vector<std::array<double, size>>& points, const std::string& detail) {
     return command
@@ -71,20 +71,20 @@ Option add_points(Command command, std::vector<std::array<double, size>>& points
 }
 
 /// Checks a coordinate that a user gave [m]. @param where it was given, for the message
-/// @throws UsageError unless it is finite and at most 1e6 either way
+/// @throws UsageError unless it is finite and within +-1e6
 void require_coordinate(double coordinate_m, const std::string& where);
 
 /// The number of threads that a command uses unless told otherwise: one per processor, 64 at most.
 [[nodiscard]] int default_threads();
 
-/// The folder that keeps the user's aero maps between runs: $XDG_CACHE_HOME/downwash, or $HOME/.cache/downwash without
-/// an absolute path in that variable. Empty when there is no home either, or no cache is wanted.
+/// The folder that keeps the user's aero maps between runs: $XDG_CACHE_HOME/downwash, or $HOME/.cache/downwash if
+/// that variable holds no absolute path. Empty when there is no home either, or no cache is wanted.
 [[nodiscard]] std::filesystem::path cache_folder(bool no_cache = false);
 
-/// The file of a plan that --plan gives: itself, or solution.json in a folder.
+/// The file of a plan that --plan gives: the given file, or solution.json in the given folder.
 [[nodiscard]] std::string plan_file(const std::string& given);
 
-/// The folder of a run: itself, or that of a solution.json.
+/// The folder of a run: the given folder, or the one that holds the given solution.json.
 [[nodiscard]] std::string run_folder(const std::string& given);
 
 /// The arm angle that --arm-deg gives [rad]; that of the start without one. @throws UsageError beyond the arm's limits

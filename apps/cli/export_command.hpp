@@ -16,10 +16,10 @@ struct ExportArguments {
     std::optional<double> rate_hz;
     std::vector<double> origin;
     std::optional<double> bearing_deg;
-    bool anyway = false;
+    bool anyway = false;  ///< write it even if the run's own flight failed
 };
 
-/// Adds `export`. @param run what it does; null in a program that leaves it to downwash-export
+/// Adds `export`. @param run what it does; null if the program hands the command to downwash-export
 void add_export(Command program, Action& action, ExitCode (*run)(const ExportArguments&));
 
 /// The command of downwash-export.

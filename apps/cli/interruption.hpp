@@ -11,7 +11,7 @@
 
 namespace downwash::cli {
 
-/// What a command may take; empty: no limit.
+/// Resource limits of a command; empty: no limit.
 struct CommandLimits {
     std::optional<double> wall_s = {};               ///< counts from the construction of an Interruption on
     std::optional<std::uint64_t> memory_bytes = {};  ///< resident memory of the process
@@ -19,7 +19,7 @@ struct CommandLimits {
 
 /// During its lifetime SIGINT, SIGTERM and the command's limits end the program at once or, where there are results to
 /// save, request a stop. After a stop was requested a signal always ends the program at once.
-/// Create it before any other thread: threads inherit that these signals are blocked.
+/// Create it before any other thread: threads inherit the signal mask.
 class Interruption {
  public:
     explicit Interruption(const CommandLimits& limits = {});
@@ -32,7 +32,8 @@ class Interruption {
 
     [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
 
-    /// The exit code for the signal that requested the stop; ExitCode::done without one.
+    /// The exit code for the signal that requested the stop; ExitCode::done without one, also after a limit was
+    /// reached.
     [[nodiscard]] ExitCode code() const;
 
  private:
