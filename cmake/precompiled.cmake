@@ -41,5 +41,3 @@ endfunction()
 
 downwash_precompile(downwash_precompiled)
 downwash_precompile(downwash_precompiled_cold COLD HEADERS <nlohmann/json.hpp>)
-downwash_precompile(downwash_precompiled_ompl LIBRARIES downwash_libompl
-  HEADERS <ompl/base/Planner.h> <ompl/base/ScopedState.h> <ompl/control/PathControl.h>)
