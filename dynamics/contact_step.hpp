@@ -78,6 +78,7 @@ class TouchingSurroundings {
     double body_ratio(const PlanePoint<double>& /*center_m*/, double /*sin_pitch*/) const { return body_ratio_; }
     double wall_nearness(const PlanePoint<double>& /*center_m*/) const { return wall_nearness_; }
     double thrust_scale(int rotor) const { return around_.thrust_scale(rotor); }
+    static constexpr bool has_wind = Around::has_wind;
     PlanePoint<double> wind() const { return around_.wind(); }
     void add_load(const double q[4], const double u[4], const Attitude<double>& a, double force[4]) const {
         const ContactLoad load = contact_load(model_, contact_, q, u, a);

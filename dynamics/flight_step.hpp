@@ -69,8 +69,10 @@ void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], 
     if (model.has_walls) {
         force[0] = force[0] + wrench.wall_push_n;
     }
-    if (model.has_drag) {
-        add_drag(model, a, u, around.wind(), force);
+    if constexpr (Around::has_wind) {
+        if (model.has_drag) {
+            add_drag(model, a, u, around.wind(), force);
+        }
     }
     around.add_load(q, u, a, force);
     forward_dynamics(model, motion.equations, force, du);

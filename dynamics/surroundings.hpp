@@ -25,18 +25,19 @@ concept ThrustRatios = requires(const S& around, int rotor, const PlanePoint<T>&
 /// - `wall_nearness(center_m)`: from -1 (the vehicle touches a wall behind it) to 1 (ahead); asked for where there are
 ///   walls
 /// - `thrust_scale(rotor)`: the thrust that a rotor really gives in free air over the nominal one
-/// - `wind()`: velocity of the air [m/s]; asked for where there is drag
+/// - `has_wind`: false where no drag acts; `wind()`: velocity of the air [m/s]
 /// - `add_load(q, u, attitude, force)`: adds other generalised forces [N, N, N m, N m]
 template <class S, class T>
 concept Surroundings = ThrustRatios<S, T> &&
     requires(const S& around, int rotor, const PlanePoint<T>& at_m, const T* q, const Attitude<T>& attitude, T* force) {
     { around.wall_nearness(at_m) } -> std::same_as<T>;
     { around.thrust_scale(rotor) } -> std::same_as<T>;
+    { S::has_wind } -> std::convertible_to<bool>;
     { around.wind() } -> std::same_as<PlanePoint<T>>;
     around.add_load(q, q, attitude, force);
 };
 
-/// Still air far from everything. Other surroundings derive from this and hide the members that they change.
+/// No air and nothing near. Other surroundings derive from this and hide the members that they change.
 template <class T>
 struct CalmSurroundings {
     T thrust_ratio(int /*rotor*/, const PlanePoint<T>& /*hub_m*/, const T& /*sin_pitch*/) const { return T(1); }
@@ -44,6 +45,7 @@ struct CalmSurroundings {
     T body_ratio(const PlanePoint<T>& /*center_m*/, const T& /*sin_pitch*/) const { return T(1); }
     T wall_nearness(const PlanePoint<T>& /*center_m*/) const { return T(0); }
     T thrust_scale(int /*rotor*/) const { return T(1); }
+    static constexpr bool has_wind = false;
     PlanePoint<T> wind() const { return {T(0), T(0)}; }
     void add_load(const T* /*q*/, const T* /*u*/, const Attitude<T>& /*attitude*/, T* /*force*/) const {}
 };

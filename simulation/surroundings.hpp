@@ -1,5 +1,7 @@
 #pragma once
 
+#include <concepts>
+
 #include "downwash/dynamics/surroundings.hpp"
 #include "downwash/simulation/effect_field.hpp"
 #include "downwash/simulation/world_numbers.hpp"
@@ -29,6 +31,9 @@ class NominalSurroundings : public dynamics::CalmSurroundings<T> {
 
  private:
     T of_tilted(const SidedFactor<T>& level, const T& sin_pitch) const {
+        if constexpr (std::same_as<Field, NoEffect>) {
+            return T(1);
+        }
         return tilt_loss_.is_any() ? tilted(level, tilt_loss_, sin_pitch).all : level.all;
     }
 
@@ -56,6 +61,7 @@ class WorldSurroundings : public dynamics::CalmSurroundings<T> {
         return field_.wall_nearness(center_m.x - world_.scene_x_m, center_m.z - world_.scene_z_m);
     }
     T thrust_scale(int rotor) const { return world_.rotor_thrust_scale[rotor]; }
+    static constexpr bool has_wind = true;
     dynamics::PlanePoint<T> wind() const { return wind_; }
 
  private:

@@ -33,6 +33,7 @@ Robot robot_with_drag() {
 struct Air : FreeAir {
     explicit Air(const dynamics::PlanePoint<double>& moving) : air(moving) {}
     dynamics::PlanePoint<double> air;
+    static constexpr bool has_wind = true;
     [[nodiscard]] dynamics::PlanePoint<double> wind() const { return air; }
 };
 
