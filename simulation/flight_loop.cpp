@@ -20,6 +20,18 @@ struct ChosenStep {
     }
 };
 
+/// One step in the nominal world: what flies through maps and without effects, thousands of ticks at a time.
+template <class Law>
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+[[gnu::flatten]]  // in one piece it takes a fifth less
+#endif
+VehicleState<double>
+plain_tick(const TickModel& model, const Law& law, const VehicleState<double>& state, const ReferencePoint& reference,
+           FlightEffect& effect, controllers::Actuation<double>& given) {
+    const auto motion = dynamics::motion_at(model.plant, state.plant.q, state.plant.u);
+    return simulation::tick(model, law, state, motion, reference, effect, given);
+}
+
 }  // namespace
 
 FlightState FlightLoop::tick_with(const double* noise, const FlightState& state, const ReferencePoint& reference,
@@ -29,8 +41,11 @@ FlightState FlightLoop::tick_with(const double* noise, const FlightState& state,
         if (world_ != nullptr) {
             return tick_in_world(model_, law, world_->numbers, noise, state, reference, effect_, given, step);
         }
-        const auto motion = dynamics::motion_at(model_.plant, state.plant.q, state.plant.u);
         const VehicleState<double>& vehicle = state;
+        if (std::holds_alternative<dynamics::OneStep>(integration)) {
+            return FlightState{plain_tick(model_, law, vehicle, reference, effect_, given), state.world};
+        }
+        const auto motion = dynamics::motion_at(model_.plant, state.plant.q, state.plant.u);
         return FlightState{simulation::tick(model_, law, vehicle, motion, reference, effect_, given, step),
                            state.world};
     });

@@ -32,7 +32,7 @@ class NominalSurroundings : public dynamics::CalmSurroundings<T> {
  private:
     T of_tilted(const SidedFactor<T>& level, const T& sin_pitch) const {
         if constexpr (std::same_as<Field, NoEffect>) {
-            return T(1);
+            return T(1);  // the compiler does not see that tilt changes nothing then
         }
         return tilt_loss_.is_any() ? tilted(level, tilt_loss_, sin_pitch).all : level.all;
     }
