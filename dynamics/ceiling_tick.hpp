@@ -116,9 +116,8 @@ ContactTick<n> contact_tick(const SpaceModel<n>& model, const CeilingContact& co
     for (double rest_s = dt_s; rest_s > 0;) {
         // Friction decays slip at mu N / v_slip times the mobility.
         const double slip_decay_1_s = contact.friction * load.normal_n * slip_mobility / contact.slip_speed_m_s;
-        const double longest_s =
-            step_share * lane::min(phase_rad / fastest_rad_s,
-                                   slip_decay_1_s > 0 ? friction_decay / slip_decay_1_s : dt_s);
+        const double longest_s = step_share * lane::min(phase_rad / fastest_rad_s,
+                                                        slip_decay_1_s > 0 ? friction_decay / slip_decay_1_s : dt_s);
         const double parts = std::ceil(rest_s / longest_s);
         const bool is_last = parts <= 1;
         const double step_s = is_last ? rest_s : rest_s / parts;
