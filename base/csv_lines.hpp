@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 #include "downwash/base/export.hpp"
@@ -42,5 +43,8 @@ class DOWNWASH_EXPORT CsvLines {
     std::string_view rest_, line_;
     std::size_t number_ = 0;
 };
+
+/// A text as a cell: one with commas, quotes or ends of lines stands in quotes (RFC 4180).
+[[nodiscard]] DOWNWASH_EXPORT std::string csv_cell(const std::string& text);
 
 }  // namespace downwash

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "downwash/base/export.hpp"
+#include "downwash/base/key_error.hpp"
 
 namespace downwash {
 
@@ -28,5 +29,15 @@ DOWNWASH_EXPORT void write_file(const std::filesystem::path& file, std::string_v
 
 /// @throws FileError if write_file could not begin to write this file
 DOWNWASH_EXPORT void require_writable(const std::filesystem::path& file);
+
+/// Does something with a file, and names the file if that fails. @throws InputError
+template <class Use>
+auto naming(const std::filesystem::path& file, const Use& use) {
+    try {
+        return use();
+    } catch (const FileError& error) {
+        throw_input_error(file.string() + " " + error.what());
+    }
+}
 
 }  // namespace downwash

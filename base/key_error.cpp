@@ -2,23 +2,19 @@
 
 #include <utility>
 
+#include "downwash/base/text.hpp"
+
 namespace downwash {
 namespace {
 
-std::string joined(const std::vector<KeyError>& errors) {
-    std::string text;
-    for (const KeyError& error : errors) {
-        if (!text.empty()) {
-            text += '\n';
-        }
-        text += error.key.empty() ? error.message : error.key + ": " + error.message;
-    }
-    return text;
+std::string text_of(const KeyError& error) {
+    return error.key.empty() ? error.message : error.key + ": " + error.message;
 }
 
 }  // namespace
 
-InputError::InputError(std::vector<KeyError> errors) : std::runtime_error(joined(errors)), errors_(std::move(errors)) {}
+InputError::InputError(std::vector<KeyError> errors)
+    : std::runtime_error(joined(errors, "\n", text_of)), errors_(std::move(errors)) {}
 
 void throw_input_error(std::string message, std::string key) {
     throw InputError(std::vector<KeyError>{{std::move(key), std::move(message)}});

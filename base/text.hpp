@@ -3,12 +3,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
+#include <utility>
 
 #include "downwash/base/export.hpp"
 
@@ -66,6 +68,18 @@ template <class Number>
 
 /// A user's text for a message: on one line, cut after about fifty bytes but never within a character.
 [[nodiscard]] DOWNWASH_EXPORT std::string excerpt(std::string_view text);
+
+/// The texts of some values with a separator between them.
+/// @param text (value) -> its text
+template <class Values, class Text = std::identity>
+[[nodiscard]] std::string joined(const Values& values, std::string_view separator, const Text& text = {}) {
+    std::string all;
+    bool is_first = true;
+    for (const auto& value : values) {
+        all.append(std::exchange(is_first, false) ? std::string_view() : separator).append(text(value));
+    }
+    return all;
+}
 
 /// "a, b or c". Empty without names.
 [[nodiscard]] DOWNWASH_EXPORT std::string joined_names(std::span<const std::string_view> names);

@@ -18,11 +18,7 @@ std::string_view Experiment::cost_unit() const {
 }
 
 std::string text_of(const ParameterValues& parameters) {
-    std::string text;
-    for (const auto& [name, value] : parameters) {
-        text += (text.empty() ? "" : ", ") + name + " " + to_text(value);
-    }
-    return text;
+    return joined(parameters, ", ", [](const auto& named) { return named.first + " " + to_text(named.second); });
 }
 
 std::string PlannerSetup::name() const {
@@ -50,12 +46,9 @@ std::vector<SeedRange> ranges_of(const std::vector<std::uint32_t>& seeds) {
 }
 
 std::string seeds_text(const std::vector<std::uint32_t>& seeds) {
-    std::string text;
-    for (const auto& [first, last] : ranges_of(seeds)) {
-        text += (text.empty() ? "" : " ") + std::to_string(first);
-        text += last != first ? "-" + std::to_string(last) : "";
-    }
-    return text;
+    return joined(ranges_of(seeds), " ", [](const SeedRange& range) {
+        return std::to_string(range.first) + (range.last != range.first ? "-" + std::to_string(range.last) : "");
+    });
 }
 
 }  // namespace downwash::bench

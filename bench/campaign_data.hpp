@@ -157,16 +157,7 @@ struct Run {
     std::optional<WorldFigures> in_worlds = {};  ///< flights of a solved run in worlds, if the campaign evaluates plans
     std::optional<RunMachine> made_on = {};      ///< empty before it is run
 
-    [[nodiscard]] bool has_failed_flight() const {
-        return status == RunStatus::solved && flight && flight->outcome != Outcome::ok;
-    }
     [[nodiscard]] bool holds() const { return status == RunStatus::solved && flight && flight->outcome == Outcome::ok; }
-};
-
-/// The results of a campaign so far.
-struct CampaignResults {
-    CampaignPlan plan;
-    std::vector<Run> runs;
 };
 
 /// Consecutive seeds, both ends included.

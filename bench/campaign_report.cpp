@@ -366,15 +366,6 @@ CampaignReport report_of(const CampaignPlan& plan, const std::vector<RunFigures>
     return report;
 }
 
-CampaignReport report_of(const CampaignResults& results) {
-    FiguresMaker maker;
-    std::vector<RunFigures> runs;
-    for (const Run& run : results.runs) {
-        runs.push_back(maker.figures_of(run));
-    }
-    return report_of(results.plan, runs);
-}
-
 CampaignReport read_report(const std::filesystem::path& folder) {
     FiguresMaker maker;
     std::vector<RunFigures> runs;

@@ -10,10 +10,9 @@
 namespace downwash::bench {
 
 [[nodiscard]] CampaignReport report_of(const CampaignPlan& plan, const std::vector<RunFigures>& runs);
-[[nodiscard]] CampaignReport report_of(const CampaignResults& results);
 
 /// The report of what a campaign has left in a folder. It needs some 0.5 kB of memory for a run.
-/// @throws CampaignError, DatabaseError as read_results()
+/// @throws CampaignError, DatabaseError as read_runs()
 [[nodiscard]] CampaignReport read_report(const std::filesystem::path& folder);
 
 /// The report as a Markdown document.

@@ -21,20 +21,6 @@
 namespace downwash::bench {
 namespace {
 
-template <class Values, class Text>
-std::string listed(const Values& values, const Text& text) {
-    std::string list;
-    for (const auto& value : values) {
-        list += (list.empty() ? "" : " ") + std::string(text(value));
-    }
-    return list;
-}
-
-/// "{goal_bias 0.2} {}"
-std::string listed_sets(const std::vector<ParameterValues>& sets) {
-    return listed(sets, [](const ParameterValues& set) { return "{" + text_of(set) + "}"; });
-}
-
 std::string target_text(const CampaignExpectation& target) {
     std::string text(downwash::name_of(target.variant));
     text += target.algorithm ? " " + *target.algorithm : "";
@@ -81,12 +67,12 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"stop_at_first_solution", c.stop_at_first_solution ? "true" : "false"},
         {"as_believed", c.as_believed ? "true" : "false"},
         {"evaluation_worlds", std::to_string(c.evaluation_worlds)},
-        {"variants", listed(c.variants, [](Variant v) { return downwash::name_of(v); })},
-        {"algorithms", listed(c.algorithms, [](const std::string& a) { return a; })},
+        {"variants", joined(c.variants, " ", [](Variant v) { return downwash::name_of(v); })},
+        {"algorithms", joined(c.algorithms, " ")},
         {"objectives",
-         c.objectives ? listed(*c.objectives, [](Objective o) { return downwash::name_of(o); }) : "each problem's own"},
-        {"margins_m", c.margins_m ? listed(*c.margins_m, [](double m) { return to_text(m); }) : "each problem's own"},
-        {"parameters", c.parameters.empty() ? "each problem's own" : listed_sets(c.parameters)},
+         c.objectives ? joined(*c.objectives, " ", [](Objective o) { return downwash::name_of(o); }) : "each problem's own"},
+        {"margins_m", c.margins_m ? joined(*c.margins_m, " ", [](double m) { return to_text(m); }) : "each problem's own"},
+        {"parameters", c.parameters.empty() ? "each problem's own" : joined(c.parameters, " ", [](const ParameterValues& set) { return "{" + text_of(set) + "}"; })},
         {"seeds", seeds_text(c.seeds.all())}};
     if (!is_sharded) {  // continued on this computer only
         settings.insert(settings.begin() + 4, {{"host", host_name()}, {"processor", processor()}});

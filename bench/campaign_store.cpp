@@ -211,11 +211,4 @@ void read_runs_of(const CampaignPlan& plan, const std::string& checksum, const s
     take_all(database, is_known ? plan : read_plan(database, file), folder, take);
 }
 
-CampaignResults read_results(const std::filesystem::path& folder) {
-    CampaignResults results;
-    results.plan = read_runs(
-        folder, [](const CampaignPlan&) {}, [&](Run&& run) { results.runs.push_back(std::move(run)); });
-    return results;
-}
-
 }  // namespace downwash::bench

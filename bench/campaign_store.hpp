@@ -67,7 +67,8 @@ class CampaignStore {
 /// Reads what a campaign has left in a folder, finished or not, one run after the other.
 /// @param begin gets the plan first   @param take gets every run, in the order in which they were added
 /// @return the plan
-/// @throws CampaignError, DatabaseError as read_results(), after the last run that is whole
+/// @throws CampaignError, DatabaseError after the last run that is whole: no such file, another layout, a file that was
+/// changed or damaged; the message names every run that is not what was written, and says what to do
 CampaignPlan read_runs(const std::filesystem::path& folder, const std::function<void(const CampaignPlan&)>& begin,
                        const std::function<void(Run&&)>& take);
 
@@ -75,10 +76,5 @@ CampaignPlan read_runs(const std::filesystem::path& folder, const std::function<
 /// @param checksum stored_plan_checksum() of a file that has the plan
 void read_runs_of(const CampaignPlan& plan, const std::string& checksum, const std::filesystem::path& folder,
                   const std::function<void(Run&&)>& take);
-
-/// Reads what a campaign has left in a folder, finished or not.
-/// @throws CampaignError, DatabaseError: no such file, another layout, a file that was changed or damaged; the message
-/// names every run that is not what was written, and says what to do
-[[nodiscard]] CampaignResults read_results(const std::filesystem::path& folder);
 
 }  // namespace downwash::bench

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "downwash/base/csv_lines.hpp"
 #include "downwash/bench/campaign_report.hpp"
 #include "downwash/bench/campaign_schema.hpp"
 
@@ -54,17 +55,6 @@ std::string latex_worlds(const WorldsFigures& figures) {
     return fmt::format(" & {} & {} & {}", figures.flown > 0 ? latex_share(figures.failed) : "--",
                        figures.tested > 0 ? latex_share(figures.certified) : "--",
                        latex_spread(figures.first_certified_s));
-}
-
-std::string in_csv(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) {
-        return text;
-    }
-    std::string quoted = "\"";
-    for (const char letter : text) {
-        quoted += letter == '"' ? "\"\"" : std::string(1, letter);
-    }
-    return quoted + '"';
 }
 
 std::string csv_number(double value) {
@@ -139,9 +129,9 @@ std::string csv_of(const CampaignReport& report) {
     for (const CellFigures& cell : report.cells) {
         const Experiment& experiment = plan.experiments[cell.experiment];
         const PlannerSetup& planner = plan.planners[cell.planner];
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", in_csv(experiment.problem),
-                            in_csv(experiment.objective), downwash::name_of(planner.variant), in_csv(planner.algorithm),
-                            in_csv(text_of(planner.parameters)), planner.margin_m ? csv_number(*planner.margin_m) : "",
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", csv_cell(experiment.problem),
+                            csv_cell(experiment.objective), downwash::name_of(planner.variant), csv_cell(planner.algorithm),
+                            csv_cell(text_of(planner.parameters)), planner.margin_m ? csv_number(*planner.margin_m) : "",
                             cell.solved.attempts, cell.missing, csv_share(cell.solved), csv_share(cell.failed_flights),
                             csv_share(cell.held), cell.discarded, csv_number(cell.min_clearance_m),
                             csv_spread(cell.first_solution_s), csv_spread(cell.verified_s), csv_spread(cell.answer_s),

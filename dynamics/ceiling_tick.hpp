@@ -61,13 +61,6 @@ struct UnderCeiling {
     }
 };
 
-/// How the steps of a flight under a ceiling shrink: contact and friction are stiff.
-struct ContactSteps {
-    double share = 1;           ///< share of the step that is taken otherwise; 0.5 to see what the steps do to a result
-    double phase_rad = 0.1;     ///< phase of the fastest vibration against the ceiling per step
-    double friction_decay = 1;  ///< by which friction may slow slip per step, as an exponent
-};
-
 /// A tick under a ceiling.
 template <int n>
 struct ContactTick {
@@ -78,11 +71,15 @@ struct ContactTick {
 };
 
 /// The state after `dt_s` under a ceiling, in as many Runge-Kutta steps as contact needs: one where nothing can touch.
-/// @param dt_s a tick, at most 0.02 s
+/// @param dt_s a tick, at most 0.02 s   @param step_share share of the step that is taken otherwise; for tests
 template <int n, SpaceSurroundings<double> Around>
 ContactTick<n> contact_tick(const SpaceModel<n>& model, const CeilingContact& contact,
                             const SpaceState<double, n>& state, const SpaceCommand<double, n>& command, double dt_s,
-                            const Around& around, const ContactSteps& steps = {}) {
+                            const Around& around, double step_share = 1) {
+    // Contact and friction are stiff.
+    constexpr double phase_rad = 0.1;     // of the fastest vibration against the ceiling per step
+    constexpr double friction_decay = 1;  // by which friction may slow slip per step, as an exponent
+
     const auto load_at = [&](const SpaceState<double, n>& at) {
         return ceiling_load(contact, at.q, at.u, rotation_of(at.q + 3));
     };
@@ -119,9 +116,8 @@ ContactTick<n> contact_tick(const SpaceModel<n>& model, const CeilingContact& co
     for (double rest_s = dt_s; rest_s > 0;) {
         // Friction decays slip at mu N / v_slip times the mobility.
         const double slip_decay_1_s = contact.friction * load.normal_n * slip_mobility / contact.slip_speed_m_s;
-        const double longest_s =
-            steps.share * lane::min(steps.phase_rad / fastest_rad_s,
-                                    slip_decay_1_s > 0 ? steps.friction_decay / slip_decay_1_s : dt_s);
+        const double longest_s = step_share * lane::min(phase_rad / fastest_rad_s,
+                                                        slip_decay_1_s > 0 ? friction_decay / slip_decay_1_s : dt_s);
         const double parts = std::ceil(rest_s / longest_s);
         const bool is_last = parts <= 1;
         const double step_s = is_last ? rest_s : rest_s / parts;

@@ -43,46 +43,22 @@ template <class T, class P, SpaceSurroundings<T> Around>
 PitchBenchState<T> pitch_bench_step(const BasicSpaceModel<P, 0>& model, const PitchBench& bench,
                                     const PitchBenchState<T>& state, const T thrust_command_n[max_rotors], T dt_s,
                                     const Around& around) {
-    constexpr double share_of_step[] = {0, 0.5, 0.5, 1};
-    constexpr double weight[] = {1, 2, 2, 1};
-    const bool has_lag = model.has_rotor_lag;
+    constexpr int thrusts_at = 2;
     const int rotors = model.rotor_count;
-    PitchBenchState<T> at = state;
-    T thrust_rate[max_rotors], thrust_sum[max_rotors];
-    for (int i = 0; i < rotors; ++i) {
-        at.thrust_n[i] = has_lag ? state.thrust_n[i] : thrust_command_n[i];
-        thrust_sum[i] = T(0);
+    T y[thrusts_at + max_rotors] = {state.pitch_rad, state.pitch_rate_rad_s};
+    std::copy_n(state.thrust_n, max_rotors, y + thrusts_at);
+    if (!model.has_rotor_lag) {
+        std::copy_n(thrust_command_n, rotors, y + thrusts_at);
     }
-    T acceleration(0), pitch_sum(0), rate_sum(0);
-    for (int stage = 0; stage < 4; ++stage) {
-        if (stage > 0) {
-            const T step_s = T(share_of_step[stage]) * dt_s;
-            at.pitch_rad = state.pitch_rad + step_s * at.pitch_rate_rad_s;
-            at.pitch_rate_rad_s = state.pitch_rate_rad_s + step_s * acceleration;
-            if (has_lag) {
-                for (int i = 0; i < rotors; ++i) {
-                    at.thrust_n[i] = state.thrust_n[i] + step_s * thrust_rate[i];
-                }
-            }
+    runge_kutta_step(y, thrusts_at + (model.has_rotor_lag ? rotors : 0), dt_s, [&](const T* at, T* rate) {
+        rate[0] = at[1];
+        rate[1] = pitch_acceleration(model, bench, at[0], at[1], at + thrusts_at, around);
+        for (int i = 0; i < rotors && model.has_rotor_lag; ++i) {
+            rate[thrusts_at + i] = (thrust_command_n[i] - at[thrusts_at + i]) / T(model.rotor_time_constant_s);
         }
-        acceleration = pitch_acceleration(model, bench, at.pitch_rad, at.pitch_rate_rad_s, at.thrust_n, around);
-        const T w(weight[stage]);
-        pitch_sum = pitch_sum + w * at.pitch_rate_rad_s;
-        rate_sum = rate_sum + w * acceleration;
-        if (has_lag) {
-            for (int i = 0; i < rotors; ++i) {
-                thrust_rate[i] = (thrust_command_n[i] - at.thrust_n[i]) / T(model.rotor_time_constant_s);
-                thrust_sum[i] = thrust_sum[i] + w * thrust_rate[i];
-            }
-        }
-    }
-    const T sixth_s = dt_s * T(1.0 / 6.0);
-    PitchBenchState<T> next = state;
-    next.pitch_rad = state.pitch_rad + sixth_s * pitch_sum;
-    next.pitch_rate_rad_s = state.pitch_rate_rad_s + sixth_s * rate_sum;
-    for (int i = 0; i < rotors; ++i) {
-        next.thrust_n[i] = has_lag ? state.thrust_n[i] + sixth_s * thrust_sum[i] : thrust_command_n[i];
-    }
+    });
+    PitchBenchState<T> next{y[0], y[1], {}};
+    std::copy_n(y + thrusts_at, max_rotors, next.thrust_n);
     return next;
 }
 

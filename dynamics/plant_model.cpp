@@ -23,11 +23,6 @@ LayoutSums sums(const RotorParameters& rotors) {
 
 }  // namespace
 
-bool allocation_has_full_rank(const RotorParameters& rotors) {
-    const LayoutSums s = sums(rotors);
-    return s.determinant() > 1e-9 * s.count * s.xx;
-}
-
 PlantModel make_plant_model(const MultirotorParameters& multirotor, const ArmParameters& arm,
                             const RotorParameters& rotors, bool has_fountain) {
     assert(rotors.positions_m.size() <= static_cast<std::size_t>(max_rotors));

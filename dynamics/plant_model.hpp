@@ -60,8 +60,4 @@ using PlantModel = BasicPlantModel<double>;
                                                           const ArmParameters& arm, const RotorParameters& rotors,
                                                           bool has_fountain = false);
 
-/// Whether the rotor positions let total thrust and pitch torque be commanded apart (rank 2 of the allocation of
-/// docs/model.md 3).
-[[nodiscard]] DOWNWASH_EXPORT bool allocation_has_full_rank(const RotorParameters& rotors);
-
 }  // namespace downwash

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+
 #include "downwash/dynamics/rotor_power.hpp"
+#include "downwash/dynamics/runge_kutta.hpp"
 #include "downwash/dynamics/space_surroundings.hpp"
 
 // The plant in space over one control tick: bodies, rotors anywhere and tilted, and what surrounds them.
@@ -94,82 +97,38 @@ void normalise_attitude(T q[7]) {
 template <class T, int n, class P, SpaceSurroundings<T> Around>
 SpaceState<T, n> space_step(const BasicSpaceModel<P, n>& model, const SpaceState<T, n>& state,
                             const SpaceCommand<T, n>& command, T dt_s, const Around& around) {
-    constexpr double share_of_step[] = {0, 0.5, 0.5, 1};
-    constexpr double weight[] = {1, 2, 2, 1};
-    constexpr int coordinates = space_coordinates<n>;
-    constexpr int speeds = space_speeds<n>;
+    constexpr int speeds_at = space_coordinates<n>, energy_at = speeds_at + space_speeds<n>, thrusts_at = energy_at + 1;
     const bool has_lag = model.has_rotor_lag;
     const int rotors = model.rotor_count;
-    T q[coordinates], u[speeds], thrust_n[max_rotors];                 // at the stage
-    T dq[coordinates] = {}, du[speeds] = {}, thrust_rate[max_rotors];  // there
-    T q_sum[coordinates], u_sum[speeds], thrust_sum[max_rotors], power_sum(0);
-    for (int i = 0; i < coordinates; ++i) {
-        q[i] = state.q[i];
-        q_sum[i] = T(0);
-    }
-    for (int i = 0; i < speeds; ++i) {
-        u[i] = state.u[i];
-        u_sum[i] = T(0);
-    }
-    for (int i = 0; i < rotors; ++i) {
-        thrust_n[i] = has_lag ? state.thrust_n[i] : command.thrust_n[i];
-        thrust_sum[i] = T(0);
-    }
-    LaneVector<T> rotor_spin = rotor_spin_of(model, thrust_n);
-    for (int stage = 0; stage < 4; ++stage) {
-        if (stage > 0) {
-            const T step_s = T(share_of_step[stage]) * dt_s;
-            for (int i = 0; i < coordinates; ++i) {
-                q[i] = state.q[i] + step_s * dq[i];
-            }
-            for (int i = 0; i < speeds; ++i) {
-                u[i] = state.u[i] + step_s * du[i];
-            }
-            if (has_lag) {
-                for (int i = 0; i < rotors; ++i) {
-                    thrust_n[i] = state.thrust_n[i] + step_s * thrust_rate[i];
-                }
-                rotor_spin = rotor_spin_of(model, thrust_n);
-            }
-        }
-        coordinate_rates<T, n>(q, u, dq);
-        accelerations(model, q, u, thrust_n, rotor_spin, command.joint_torque_nm, around, du);
-        const T w(weight[stage]);
-        for (int i = 0; i < coordinates; ++i) {
-            q_sum[i] = q_sum[i] + w * dq[i];
-        }
-        for (int i = 0; i < speeds; ++i) {
-            u_sum[i] = u_sum[i] + w * du[i];
-        }
-        for (int i = 0; i < n; ++i) {
-            power_sum = power_sum + w * lane::abs(command.joint_torque_nm[i] * u[6 + i]);
-        }
-        if (has_lag) {
-            power_sum = power_sum + w * rotor_power(model, thrust_n);
-            for (int i = 0; i < rotors; ++i) {
-                thrust_rate[i] = (command.thrust_n[i] - thrust_n[i]) / T(model.rotor_time_constant_s);
-                thrust_sum[i] = thrust_sum[i] + w * thrust_rate[i];
-            }
-        }
-    }
-    const T sixth_s = dt_s * T(1.0 / 6.0);
-    SpaceState<T, n> next;
-    for (int i = 0; i < coordinates; ++i) {
-        next.q[i] = state.q[i] + sixth_s * q_sum[i];
-    }
-    normalise_attitude(next.q);
-    for (int i = 0; i < speeds; ++i) {
-        next.u[i] = state.u[i] + sixth_s * u_sum[i];
-    }
-    next.energy_j = state.energy_j + sixth_s * power_sum;
+    T y[thrusts_at + max_rotors];
+    std::copy_n(state.q, space_coordinates<n>, y);
+    std::copy_n(state.u, space_speeds<n>, y + speeds_at);
+    y[energy_at] = state.energy_j;
+    std::copy_n(state.thrust_n, max_rotors, y + thrusts_at);
     if (!has_lag) {
-        next.energy_j = next.energy_j + dt_s * rotor_power(model, command.thrust_n);
+        std::copy_n(command.thrust_n, rotors, y + thrusts_at);
     }
-    for (int i = 0; i < max_rotors; ++i) {
-        next.thrust_n[i] = i >= rotors ? state.thrust_n[i]
-                           : has_lag   ? state.thrust_n[i] + sixth_s * thrust_sum[i]
-                                       : command.thrust_n[i];
-    }
+    const LaneVector<T> held_spin = rotor_spin_of(model, y + thrusts_at);
+    runge_kutta_step(y, thrusts_at + (has_lag ? rotors : 0), dt_s, [&](const T* at, T* rate) {
+        const T *u = at + speeds_at, *thrust_n = at + thrusts_at;
+        coordinate_rates<T, n>(at, u, rate);
+        accelerations(model, at, u, thrust_n, has_lag ? rotor_spin_of(model, thrust_n) : held_spin,
+                      command.joint_torque_nm, around, rate + speeds_at);
+        T power_w(0);
+        for (int i = 0; i < n; ++i) {
+            power_w = power_w + lane::abs(command.joint_torque_nm[i] * u[6 + i]);
+        }
+        rate[energy_at] = has_lag ? power_w + rotor_power(model, thrust_n) : power_w;
+        for (int i = 0; i < rotors && has_lag; ++i) {
+            rate[thrusts_at + i] = (command.thrust_n[i] - thrust_n[i]) / T(model.rotor_time_constant_s);
+        }
+    });
+    SpaceState<T, n> next;
+    std::copy_n(y, space_coordinates<n>, next.q);
+    normalise_attitude(next.q);
+    std::copy_n(y + speeds_at, space_speeds<n>, next.u);
+    next.energy_j = has_lag ? y[energy_at] : y[energy_at] + dt_s * rotor_power(model, command.thrust_n);
+    std::copy_n(y + thrusts_at, max_rotors, next.thrust_n);
     return next;
 }
 

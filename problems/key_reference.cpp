@@ -44,15 +44,6 @@ Value in_file_units(const std::string& path, Value value) {
     return value;
 }
 
-template <class Element, class Text>
-std::string list_text(const std::vector<Element>& list, const Text& text) {
-    std::string all;
-    for (const Element& element : list) {
-        all += (all.empty() ? "" : ", ") + text(element);
-    }
-    return "[" + all + "]";
-}
-
 std::string text_of(const Value& value) {
     const auto number_text = [](double number) { return to_text(number, 6); };
     if (const auto* flag = std::get_if<bool>(&value)) {
@@ -68,10 +59,10 @@ std::string text_of(const Value& value) {
         return *text;
     }
     if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
-        return list_text(*numbers, number_text);
+        return "[" + joined(*numbers, ", ", number_text) + "]";
     }
     if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
-        return list_text(*texts, [](const std::string& text) { return text; });
+        return "[" + joined(*texts, ", ") + "]";
     }
     if (const auto* spread = std::get_if<Spread>(&value)) {
         return spread_text(*spread, number_text);

@@ -2,24 +2,14 @@
 
 #include <utility>
 
+#include "downwash/base/text.hpp"
+
 namespace downwash {
-namespace {
-
-std::string joined(const std::vector<LocatedError>& errors) {
-    std::string text;
-    for (const LocatedError& error : errors) {
-        text += (text.empty() ? "" : "\n") + to_text(error);
-    }
-    return text;
-}
-
-}  // namespace
-
 std::string to_text(const LocatedError& error) {
     return error.file + ":" + std::to_string(error.line) + ":" + std::to_string(error.column) + ": " + error.message;
 }
 
 ProblemFileError::ProblemFileError(std::vector<LocatedError> errors)
-    : std::runtime_error(joined(errors)), errors_(std::move(errors)) {}
+    : std::runtime_error(joined(errors, "\n", [](const LocatedError& each) { return to_text(each); })), errors_(std::move(errors)) {}
 
 }  // namespace downwash

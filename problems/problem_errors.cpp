@@ -21,6 +21,7 @@
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/touch_places.hpp"
 #include "downwash/scene/collision_checker.hpp"
+#include "downwash/scene/shape_parameters.hpp"
 #include "downwash/simulation/flight_model.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
 #include "downwash/simulation/world_parameters.hpp"
@@ -57,15 +58,7 @@ std::vector<KeyError> repeated_names(const Problem& p) {
 }
 
 std::vector<KeyError> shapeless_cylinders(const Problem& p) {
-    std::vector<KeyError> errors;
-    for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
-        const auto* cylinder = std::get_if<Cylinder>(&p.obstacles[i].shape);
-        if (cylinder && cylinder->axis == Vector3{}) {
-            errors.push_back({"environment.obstacles[" + std::to_string(i) + "].cylinder.axis",
-                              "has no direction: expected a vector other than [0, 0, 0]"});
-        }
-    }
-    return errors;
+    return shape_errors(p.obstacles, "environment.obstacles");
 }
 
 /// What shows when obstacles are placed: a mesh without area, a scale that makes it huge.
@@ -308,14 +301,7 @@ std::vector<KeyError> split_whole_numbers(const Problem& p) {
 }
 
 std::vector<KeyError> unflyable_uncertainty(const Problem& p) {
-    std::vector<KeyError> errors;
-    if (p.uncertainty) {
-        errors = uncertainty_errors(*p.uncertainty, p.robot);
-        for (KeyError& error : errors) {
-            error.key = "uncertainty." + error.key;
-        }
-    }
-    return errors;
+    return p.uncertainty ? uncertainty_errors(*p.uncertainty, p.robot) : std::vector<KeyError>();
 }
 
 const std::array<Check<ProblemCheck>, 19> checks{{

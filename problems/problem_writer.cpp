@@ -122,19 +122,7 @@ class Writer {
 
     template <class Numbers>
     static std::string list_text(const Row& row, const Numbers& numbers) {
-        std::string text;
-        for (const double number : numbers) {
-            text += (text.empty() ? "" : ", ") + number_text(row, number);
-        }
-        return "[" + text + "]";
-    }
-
-    static std::string points_text(const Row& row, const std::vector<Vector3>& points) {
-        std::string text;
-        for (const Vector3& point : points) {
-            text += (text.empty() ? "" : ", ") + list_text(row, point);
-        }
-        return "[" + text + "]";
+        return "[" + joined(numbers, ", ", [&row](double number) { return number_text(row, number); }) + "]";
     }
 
     static std::string value_text(const Row& row, const Value& value) {
@@ -154,7 +142,7 @@ class Writer {
             return list_text(row, *numbers);
         }
         if (const auto* points = std::get_if<std::vector<Vector3>>(&value)) {
-            return points_text(row, *points);
+            return "[" + joined(*points, ", ", [&row](const Vector3& point) { return list_text(row, point); }) + "]";
         }
         if (const auto* spread = std::get_if<Spread>(&value)) {
             return spread_text(*spread, [&](double number) {

@@ -10,21 +10,8 @@ namespace {
 using problems::JsonReader;
 using problems::Node;
 
-/// What may be missing or null.
-std::optional<Node> group(JsonReader& reader, const Node& root, const char* name) {
-    const auto node = JsonReader::member(root, name);
-    if (!node || node->json->is_null()) {
-        return std::nullopt;
-    }
-    if (!node->json->is_object()) {
-        reader.report(*node, "expected a group of keys or null");
-        return std::nullopt;
-    }
-    return *node;
-}
-
 void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaims>& into) {
-    const auto node = group(reader, root, "execution");
+    const auto node = reader.optional_group(root, "execution");
     if (!node) {
         return;
     }
@@ -54,7 +41,7 @@ void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaim
 }
 
 void read_certificate(JsonReader& reader, const Node& root, std::optional<double>& certified_share) {
-    const auto node = group(reader, root, "certificate");
+    const auto node = reader.optional_group(root, "certificate");
     if (!node) {
         return;
     }

@@ -100,22 +100,6 @@ TextPlace place_of_byte(std::string_view text, std::size_t byte) {
     return {static_cast<int>(lines) + 1, static_cast<int>(before.size() - line_begin) + 1};
 }
 
-std::size_t json_depth(std::string_view text) {
-    std::size_t depth = 0;
-    std::size_t deepest = 0;
-    for (std::size_t at = 0; at < text.size(); ++at) {
-        const char c = text[at];
-        if (c == '"') {
-            at = end_of_string(text, at) - 1;
-        } else if (c == '{' || c == '[') {
-            deepest = std::max(deepest, ++depth);
-        } else if ((c == '}' || c == ']') && depth > 0) {
-            --depth;
-        }
-    }
-    return deepest;
-}
-
 TextPlace json_place(std::string_view text, std::string_view key_path) {
     return place_of_byte(text, Walk(text).find(key_path));
 }

@@ -14,9 +14,6 @@ struct TextPlace {
 /// The place of a byte of a text.
 [[nodiscard]] TextPlace place_of_byte(std::string_view text, std::size_t byte);
 
-/// How deep the brackets of a text nest, those within strings not counted. The text need not be valid.
-[[nodiscard]] std::size_t json_depth(std::string_view text);
-
 /// The place of the value with a key path ("plan.reference[3].t_s"; "" is the whole) in a text that is valid JSON;
 /// of the last value before the text's end when there is none.
 [[nodiscard]] TextPlace json_place(std::string_view text, std::string_view key_path);

@@ -55,6 +55,18 @@ class JsonReader {
         return Node{&*found, group.key.empty() ? std::string(name) : group.key + "." + std::string(name)};
     }
 
+    /// A group that may be missing or null.
+    std::optional<Node> optional_group(const Node& root, std::string_view name) {
+        auto node = member(root, name);
+        if (node && !node->json->is_object()) {
+            if (!node->json->is_null()) {
+                report(*node, "expected a group of keys or null");
+            }
+            return std::nullopt;
+        }
+        return node;
+    }
+
     std::optional<Node> required(const Node& group, std::string_view name) {
         auto node = member(group, name);
         if (!node) {
@@ -98,6 +110,12 @@ class JsonReader {
             return otherwise;
         }
         return value;
+    }
+
+    /// The same; nothing when it is missing or null.
+    std::optional<double> optional_amount(const Node& group, const char* name) {
+        const double value = amount(group, name, -1);
+        return value < 0 ? std::nullopt : std::optional(value);
     }
 
     /// A whole number >= 0 that the type of `value` can hold.

@@ -76,8 +76,7 @@ std::optional<VisitOrder> read_order(JsonReader& reader, const Node& root, const
             LeftOutTarget& left_out = order.left_out.emplace_back();
             left_out.target = *target;
             reader.read_choice(each, "reason", all_left_out_reasons, left_out.reason);
-            const double energy_j = reader.amount(each, "energy_j", -1);
-            left_out.energy_j = energy_j < 0 ? std::nullopt : std::optional(energy_j);
+            left_out.energy_j = reader.optional_amount(each, "energy_j");
         }
     }
     reader.read_flag(*node, "is_best", order.is_best);

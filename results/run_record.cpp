@@ -28,11 +28,7 @@ constexpr char solution_name[] = "solution.json";
 }
 
 std::string text_of(const fs::path& file, std::size_t max_bytes = max_table_bytes) {
-    try {
-        return read_whole_file(file, max_bytes);
-    } catch (const FileError& error) {
-        throw InputError({KeyError{"", file.string() + " " + error.what()}});
-    }
+    return naming(file, [&] { return read_whole_file(file, max_bytes); });
 }
 
 std::string text_at(const nlohmann::json& json, const char* pointer) {

@@ -9,7 +9,7 @@
 namespace downwash::problems {
 namespace {
 
-constexpr std::size_t deepest_nesting = 32;
+constexpr int deepest_nesting = 32;
 
 [[noreturn]] void throw_at(const std::string& path, TextPlace place, const std::string& message) {
     throw ProblemFileError({{path, place.line, place.column, message}});
@@ -35,17 +35,26 @@ std::string read_text(const std::string& path) {
 }
 
 Json parse(const std::string& path, const std::string& text) {
-    if (json_depth(text) > deepest_nesting) {
-        throw_at(path, {}, "nests deeper than the file of a plan does");
-    }
+    bool is_deep = false;
     try {
-        return Json::parse(text);
+        Json document = Json::parse(text, [&is_deep](int depth, Json::parse_event_t, Json&) {
+            is_deep = is_deep || depth > deepest_nesting;
+            return !is_deep;
+        });
+        if (!is_deep) {
+            return document;
+        }
     } catch (const Json::parse_error& error) {
-        throw_at(path, place_of_byte(text, error.byte > 0 ? error.byte - 1 : 0),
-                 text.empty() ? "the file is empty" : "this is not JSON, or the file was cut off here");
+        if (!is_deep) {
+            throw_at(path, place_of_byte(text, error.byte > 0 ? error.byte - 1 : 0),
+                     text.empty() ? "the file is empty" : "this is not JSON, or the file was cut off here");
+        }
     } catch (const Json::exception&) {
-        throw_at(path, {}, "holds a number that is too large");
+        if (!is_deep) {
+            throw_at(path, {}, "holds a number that is too large");
+        }
     }
+    throw_at(path, {}, "nests deeper than the file of a plan does");
 }
 
 }  // namespace

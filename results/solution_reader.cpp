@@ -66,31 +66,23 @@ void read_plan(JsonReader& reader, const Node& root, const Problem& problem, Sol
 }
 
 void read_planning(JsonReader& reader, const Node& root, Solution& solution) {
-    const auto planning = JsonReader::member(root, "planning");
-    if (!planning || planning->json->is_null()) {
-        return;
-    }
-    if (!planning->json->is_object()) {
-        reader.report(*planning, "expected a group of keys");
+    const auto planning = reader.optional_group(root, "planning");
+    if (!planning) {
         return;
     }
     SearchRecord& record = solution.planning;
     record.wall_s = reader.amount(*planning, "wall_s", 0);
     record.map_wall_s = reader.amount(*planning, "map_wall_s", 0);
     solution.flight_wall_s = reader.amount(*planning, "flight_wall_s", 0);
-    const double first_s = reader.amount(*planning, "first_solution_wall_s", -1);
-    record.first_solution_wall_s = first_s < 0 ? std::nullopt : std::optional(first_s);
-    const double certified_s = reader.amount(*planning, "first_certified_wall_s", -1);
-    record.first_certified_wall_s = certified_s < 0 ? std::nullopt : std::optional(certified_s);
+    record.first_solution_wall_s = reader.optional_amount(*planning, "first_solution_wall_s");
+    record.first_certified_wall_s = reader.optional_amount(*planning, "first_certified_wall_s");
     record.simulated_s = reader.amount(*planning, "simulated_s", 0);
     reader.read_count(*planning, "iterations", record.iterations);
     reader.read_count(*planning, "edges_simulated", record.edges_simulated);
     reader.read_count(*planning, "states_checked", record.states_checked);
     for (const Node& node : reader.groups(JsonReader::member(*planning, "improvements"))) {
-        Improvement improvement{reader.amount(node, "wall_s", 0), 0, reader.amount(node, "cost", 0), {}};
-        if (const double flown = reader.amount(node, "flown_cost", -1); flown >= 0) {
-            improvement.flown_cost = flown;
-        }
+        Improvement improvement{reader.amount(node, "wall_s", 0), 0, reader.amount(node, "cost", 0),
+                                reader.optional_amount(node, "flown_cost")};
         reader.read_count(node, "iteration", improvement.iteration);
         record.improvements.push_back(improvement);
     }
@@ -103,12 +95,8 @@ void read_planning(JsonReader& reader, const Node& root, Solution& solution) {
 }
 
 void read_certificate(JsonReader& reader, const Node& root, std::optional<Certificate>& into) {
-    const auto node = JsonReader::member(root, "certificate");
-    if (!node || node->json->is_null()) {
-        return;
-    }
-    if (!node->json->is_object()) {
-        reader.report(*node, "expected a group of keys or null");
+    const auto node = reader.optional_group(root, "certificate");
+    if (!node) {
         return;
     }
     Certificate& certificate = into.emplace();
@@ -172,12 +160,8 @@ void read_head(JsonReader& reader, const Node& root, Solution& solution) {
 }
 
 void read_stops(JsonReader& reader, const Node& root, const Plan& plan, std::optional<SafeStops>& into) {
-    const auto node = JsonReader::member(root, "stops");
-    if (!node || node->json->is_null()) {
-        return;
-    }
-    if (!node->json->is_object()) {
-        reader.report(*node, "expected a group of keys or null");
+    const auto node = reader.optional_group(root, "stops");
+    if (!node) {
         return;
     }
     SafeStops& stops = into.emplace();

@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/parameter_factories.hpp"
 #include "downwash/scene/shapes.hpp"
 
@@ -39,6 +40,20 @@ void add_shape_rows(std::vector<Parameter<Model>>& rows, const std::string& path
     rows.push_back(alternative<Sphere, Model>(path + ".sphere", "a solid sphere", shape));
     add_length(number<Model>(path + ".sphere.radius_m", "radius", of(&Sphere::radius_m)));
     add_place(rows, path + ".sphere");
+}
+
+/// What the ranges of single values cannot say of such solids. @param list their key
+template <class Solid>
+std::vector<KeyError> shape_errors(const std::vector<Solid>& solids, const std::string& list) {
+    std::vector<KeyError> errors;
+    for (std::size_t i = 0; i < solids.size(); ++i) {
+        const auto* cylinder = std::get_if<Cylinder>(&solids[i].shape);
+        if (cylinder && cylinder->axis == Vector3{}) {
+            errors.push_back({list + "[" + std::to_string(i) + "].cylinder.axis",
+                              "has no direction: expected a vector other than [0, 0, 0]"});
+        }
+    }
+    return errors;
 }
 
 }  // namespace downwash

@@ -5,6 +5,7 @@
 
 #include "downwash/base/text.hpp"
 #include "downwash/dynamics/plant_model.hpp"
+#include "downwash/scene/shape_parameters.hpp"
 #include "downwash/simulation/robot.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
 #include "downwash/simulation/world_numbers.hpp"
@@ -30,15 +31,7 @@ std::vector<KeyError> missing_bodies(const Robot& robot) {
 }
 
 std::vector<KeyError> shapeless_cylinders(const Robot& robot) {
-    std::vector<KeyError> errors;
-    for (std::size_t i = 0; i < robot.body.size(); ++i) {
-        const auto* cylinder = std::get_if<Cylinder>(&robot.body[i].shape);
-        if (cylinder && cylinder->axis == Vector3{}) {
-            errors.push_back({"multirotor.body[" + std::to_string(i) + "].cylinder.axis",
-                              "has no direction: expected a vector other than [0, 0, 0]"});
-        }
-    }
-    return errors;
+    return shape_errors(robot.body, "multirotor.body");
 }
 
 std::vector<KeyError> unusable_rotor_layout(const Robot& robot) {
@@ -165,14 +158,7 @@ std::vector<KeyError> too_long_delay(const Robot& robot) {
 }
 
 std::vector<KeyError> unflyable_uncertainty(const Robot& robot) {
-    std::vector<KeyError> errors;
-    if (robot.uncertainty) {
-        errors = uncertainty_errors(*robot.uncertainty, robot);
-        for (KeyError& error : errors) {
-            error.key = "uncertainty." + error.key;
-        }
-    }
-    return errors;
+    return robot.uncertainty ? uncertainty_errors(*robot.uncertainty, robot) : std::vector<KeyError>();
 }
 
 const std::array<Check<Robot>, 14> checks{{

@@ -73,7 +73,7 @@ struct UncertaintyKey {
                                                std::uint64_t index);
 
 /// What is wrong with an uncertainty beside a robot: rotors that would follow faster than ticks can tell, delays that
-/// are too long. Keys as in files, without `uncertainty.`.
+/// are too long. Keys as in files.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> uncertainty_errors(const Uncertainty& uncertainty,
                                                                        const Robot& robot);
 

@@ -8,16 +8,6 @@
 namespace downwash {
 namespace {
 
-/// Does something with a file, and names it if that fails. @throws InputError
-template <class Use>
-auto naming(const std::filesystem::path& file, const Use& use) {
-    try {
-        return use();
-    } catch (const FileError& error) {
-        throw_input_error(file.string() + " " + error.what());
-    }
-}
-
 /// The ending that says how a grid is written.
 std::string checked_kind(const std::filesystem::path& file) {
     std::string kind = file.extension().string();

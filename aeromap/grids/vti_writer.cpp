@@ -26,12 +26,8 @@ std::string array_data(const double* values, std::size_t count) {
     return base64_text(bytes);
 }
 
-std::string joined(std::span<const double> numbers) {
-    std::string text;
-    for (const double number : numbers) {
-        text += (text.empty() ? "" : " ") + to_text(number);
-    }
-    return text;
+std::string numbers_text(std::span<const double> numbers) {
+    return joined(numbers, " ", [](double number) { return to_text(number); });
 }
 
 std::string extent_of(const FactorGrid& grid) {
@@ -41,7 +37,7 @@ std::string extent_of(const FactorGrid& grid) {
 
 std::string field_data(std::string_view name, std::span<const double> numbers) {
     return "      <DataArray type=\"Float64\" Name=\"" + std::string(name) + "\" NumberOfTuples=\"" +
-           std::to_string(numbers.size()) + "\" format=\"ascii\">" + joined(numbers) + "</DataArray>\n";
+           std::to_string(numbers.size()) + "\" format=\"ascii\">" + numbers_text(numbers) + "</DataArray>\n";
 }
 
 /// VTK writes the letters of texts as numbers, each text closed by a 0.
@@ -75,9 +71,9 @@ std::string vti_text(const FactorGrid& grid) {
         "<?xml version=\"1.0\"?>\n"
         "<VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
         "  <ImageData WholeExtent=\"" +
-        extent_of(grid) + "\" Origin=\"" + joined(first_m) + "\" Spacing=\"" +
-        joined(Vector3{grid.x().step_m(), y_step_m, grid.z().step_m()}) + "\" Direction=\"" +
-        joined(std::array<double, 9>{c, -s, 0, s, c, 0, 0, 0, 1}) + "\">\n    <FieldData>\n";
+        extent_of(grid) + "\" Origin=\"" + numbers_text(first_m) + "\" Spacing=\"" +
+        numbers_text(Vector3{grid.x().step_m(), y_step_m, grid.z().step_m()}) + "\" Direction=\"" +
+        numbers_text(std::array<double, 9>{c, -s, 0, s, c, 0, 0, 0, 1}) + "\">\n    <FieldData>\n";
     head += field_data("frame_origin_m", frame.origin_m());
     head += field_data("frame_heading_rad", std::array{frame.heading_rad()});
     head += field_data("frame_low_m", Vector3{grid.x().low_m, grid.y().low_m, grid.z().low_m});

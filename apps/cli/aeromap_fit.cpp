@@ -119,12 +119,8 @@ void print_fit(const FitArguments& given, const EffectModelInfo& model, const Ef
         fmt::print("The search did not converge; the values are the best it found.\n");
     }
     if (!fit.undetermined.empty()) {
-        std::string names;
-        for (const std::string_view name : fit.undetermined) {
-            names += (names.empty() ? "" : ", ") + std::string(name);
-        }
         fmt::print("Not determined by these measurements: {}. Keep a known value with --fix, or add other distances.\n",
-                   names);
+                   joined(fit.undetermined, ", "));
     }
     const std::string surface = given.data.surface.empty() ? std::string(model.surface) : given.data.surface;
     if (surface == "ground" || surface == "ceiling") {

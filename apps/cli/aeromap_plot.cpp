@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/measured_data.hpp"
 #include "downwash/cli/model_option.hpp"
@@ -35,11 +36,9 @@ constexpr std::array<FieldKind, 6> field_kinds{{
 }};
 
 std::string kinds_text() {
-    std::string text;
-    for (const FieldKind& kind : field_kinds) {
-        text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", kind.name, kind.description);
-    }
-    return text;
+    return joined(field_kinds, ", ", [](const FieldKind& kind) {
+        return fmt::format("{} ({})", kind.name, kind.description);
+    });
 }
 
 /// What a request asks to show.

@@ -12,10 +12,6 @@
 namespace downwash::cli {
 namespace {
 
-std::string joined(const std::vector<std::string_view>& words) {
-    return fmt::format("{}", fmt::join(words, " "));
-}
-
 /// "N" of an option that takes a number, without the check that follows.
 std::string placeholder_of(const CLI::Option& option) {
     const std::string name = option.get_type_name();
@@ -127,13 +123,13 @@ Option Option::placeholder(const std::string& text) {
 
 // CLI11 does not store words to offer: they are the name of an option's only check.
 Option Option::offer(const std::vector<std::string_view>& words) {
-    option_->check(CLI::Validator([](std::string& /*text*/) { return std::string(); }, "", joined(words)));
+    option_->check(CLI::Validator([](std::string& /*text*/) { return std::string(); }, "", joined(words, " ")));
     return *this;
 }
 
 Option Option::one_of(const std::vector<std::string>& words) {
     option_->type_name(fmt::format("{}", fmt::join(words, "|")));
-    option_->check(CLI::IsMember(words), joined({words.begin(), words.end()}));
+    option_->check(CLI::IsMember(words), joined(words, " "));
     return *this;
 }
 
@@ -186,10 +182,6 @@ std::string Option::description() const {
 
 std::string Option::default_text() const {
     return option_->get_default_str();
-}
-
-int Option::min_values() const {
-    return option_->get_items_expected_min();
 }
 
 int Option::max_values() const {

@@ -68,7 +68,6 @@ class Option {
     [[nodiscard]] std::string description() const;
     /// Empty if none is shown.
     [[nodiscard]] std::string default_text() const;
-    [[nodiscard]] int min_values() const;
     [[nodiscard]] int max_values() const;
     /// The words that shells offer after it, with blanks between them.
     [[nodiscard]] std::string offered_words() const;

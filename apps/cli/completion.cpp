@@ -6,16 +6,12 @@
 #include <vector>
 
 #include "downwash/base/embedded_file.hpp"
+#include "downwash/base/text.hpp"
 
 DOWNWASH_EMBED_FILE(downwash_completion, DOWNWASH_COMPLETION);
 
 namespace downwash::cli {
 namespace {
-
-template <class Words>
-std::string joined(const Words& words) {
-    return fmt::format("{}", fmt::join(words, " "));
-}
 
 /// What may follow a command: names of commands, words, and options.
 std::string words_after(const Command& command) {
@@ -33,7 +29,7 @@ std::string words_after(const Command& command) {
             }
         }
     }
-    return joined(words);
+    return joined(words, " ");
 }
 
 std::string case_of(const Command& command, const Option& option, const std::string& next) {

@@ -38,10 +38,6 @@ std::string text_of(double value, const char* unit) {
     return std::isfinite(value) ? fmt::format("{:.1f} {}", value, unit) : "-";
 }
 
-Json finite(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
 ExitCode run(const MarginsArguments& given) {
     const Robot robot = read_robot(given.robot);
     auto rows = Json::array();

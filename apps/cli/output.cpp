@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -43,6 +44,10 @@ void print_warning(const LocatedError& warning) noexcept {
     print_error(to_text(shown) + "\n");
 }
 
+std::string table_row(std::string_view name, const std::string& value) {
+    return fmt::format("  {:<16}  {}\n", name, value);
+}
+
 std::string shell_word(const std::string& text) {
     constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+:@%,=";
     if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) {
@@ -74,6 +79,10 @@ void print_json(const Json& document) {
 
 Json json_of(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
+}
+
+Json finite(double value) {
+    return std::isfinite(value) ? Json(value) : Json();
 }
 
 void write_result(const fs::path& file, std::string_view content, std::string_view option) {

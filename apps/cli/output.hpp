@@ -26,6 +26,9 @@ void print_outdated(const LocatedError& key) noexcept;
 /// Reports on standard error what is likely not meant.
 void print_warning(const LocatedError& warning) noexcept;
 
+/// A line of a table with two columns.
+[[nodiscard]] std::string table_row(std::string_view name, const std::string& value);
+
 /// A word of a command line, quoted as a shell needs it.
 [[nodiscard]] std::string shell_word(const std::string& text);
 
@@ -40,6 +43,8 @@ void print_json(const Json& document);
 
 /// The number, or null without one.
 [[nodiscard]] Json json_of(const std::optional<double>& value);
+/// Null for what is not finite.
+[[nodiscard]] Json finite(double value);
 
 /// Writes a file that an option names, whole or not at all. @throws UsageError when that fails
 /// @param option its name, for messages; empty: none

@@ -14,9 +14,8 @@
 namespace downwash::cli {
 namespace {
 
-/// A line of a table with two columns.
-std::string row(std::string_view name, const std::string& value) {
-    return fmt::format("  {:<16}  {}\n", name, value);
+std::string counted(const std::pair<const std::string, std::uint64_t>& cause) {
+    return fmt::format("{} {}", cause.first, cause.second);
 }
 
 std::string rejections(const SearchRecord& record) {
@@ -69,9 +68,9 @@ std::string order_rows(const VisitOrder& order, bool has_plan, const std::option
         visits += (visits.empty() ? "" : ", ") + std::to_string(visit.target + 1);
         visits += visit.alternative ? fmt::format(" (alternative {})", *visit.alternative + 1) : "";
     }
-    std::string text = row("order", visits.empty() ? "none: no target is visited" : "targets " + visits);
+    std::string text = table_row("order", visits.empty() ? "none: no target is visited" : "targets " + visits);
     if (!visits.empty()) {
-        text += row("", !has_plan ? "no plan in that order was found"
+        text += table_row("", !has_plan ? "no plan in that order was found"
                         : order.is_best
                             ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
                             : fmt::format("the cheapest that was found by {} flown legs", order.legs));
@@ -83,7 +82,7 @@ std::string order_rows(const VisitOrder& order, bool has_plan, const std::option
                               energy_budget_j.value_or(0));
         }
         text +=
-            row(&each == &order.left_out.front() ? "left out" : "", fmt::format("target {}: {}", each.target + 1, why));
+            table_row(&each == &order.left_out.front() ? "left out" : "", fmt::format("target {}: {}", each.target + 1, why));
     }
     return text;
 }
@@ -92,16 +91,16 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
     std::string text;
     const std::string_view symbol = unit_of(solution.objective);
     const std::string unit = symbol.empty() ? "" : " " + std::string(symbol);
-    text += row("flight", fmt::format("{}, {}", name_of(flight.outcome),
+    text += table_row("flight", fmt::format("{}, {}", name_of(flight.outcome),
                                       flight.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
-    text += row("cost",
+    text += table_row("cost",
                 fmt::format("{:.6g}{} planned, {:.6g}{} executed", solution.cost, unit, solution.execution_cost, unit));
-    text += row("duration", fmt::format("{:.2f} s", flight.duration_s));
-    text += row("energy", fmt::format("{:.6g} J", flight.energy_j));
-    text += row("goal error", millimetres(flight.goal_error_m));
+    text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
+    text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
+    text += table_row("goal error", millimetres(flight.goal_error_m));
     if (flight.touch) {
         const TouchRecord& touch = *flight.touch;
-        text += row("contact",
+        text += table_row("contact",
                     touch.touched_s > 0
                         ? fmt::format("{:.2f} N, off by {:.2f} N at most, {:.0f} W; from {:.2f} to {:.2f} s",
                                       touch.force_n, touch.force_error_n, touch.power_w, touch.touched_s, touch.left_s)
@@ -110,14 +109,14 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
     if (flight.goals.size() > 1) {
         const auto met =
             std::count_if(flight.goals.begin(), flight.goals.end(), [](const GoalVisit& v) { return v.is_met; });
-        text += row("goals", fmt::format("{} of {} met", met, flight.goals.size()));
+        text += table_row("goals", fmt::format("{} of {} met", met, flight.goals.size()));
         for (std::size_t i = 0; i < flight.goals.size(); ++i) {
             if (!flight.goals[i].is_met) {
-                text += row("", goal_name(solution, i + 1) + " missed: " + error_text(goals[i], flight.goals[i]));
+                text += table_row("", goal_name(solution, i + 1) + " missed: " + error_text(goals[i], flight.goals[i]));
             }
         }
     }
-    text += row("min. clearance",
+    text += table_row("min. clearance",
                 std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
     return text;
 }
@@ -134,22 +133,18 @@ namespace {
 std::string certificate_rows(const Certificate& certificate, const std::filesystem::path& folder) {
     const auto& probability = certificate.failure_probability;
     if (certificate.worlds == 0) {
-        return row("certificate", "not given: the search ended before its first flights");
+        return table_row("certificate", "not given: the search ended before its first flights");
     }
     std::string text =
-        row("certificate",
+        table_row("certificate",
             fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)",
                         certificate.is_given ? "given" : "not given", certificate.failures, certificate.worlds,
                         probability.low, probability.high, 100 * certificate.confidence)) +
-        row("", "clearance " + millimetres(certificate.clearance_m.p01) + " or more in 99 % of the worlds, " +
+        table_row("", "clearance " + millimetres(certificate.clearance_m.p01) + " or more in 99 % of the worlds, " +
                     millimetres(certificate.clearance_m.p50) + " in half of them");
-    std::string causes;
-    for (const auto& [cause, count] : certificate.causes) {
-        causes += (causes.empty() ? "" : ", ") + cause + " " + std::to_string(count);
-    }
-    if (!causes.empty()) {
-        text += row("", causes + "; to see one of them:");
-        text += row("", fmt::format("downwash execute {} --plan {} --world {}", shell_word(folder / "effective.yaml"),
+    if (!certificate.causes.empty()) {
+        text += table_row("", joined(certificate.causes, ", ", counted) + "; to see one of them:");
+        text += table_row("", fmt::format("downwash execute {} --plan {} --world {}", shell_word(folder / "effective.yaml"),
                                     shell_word(folder), certificate.worst.front().world));
     }
     return text;
@@ -223,10 +218,10 @@ std::string verdict_on_search(const Solution& solution) {
 std::string summary_of(const std::string& verdict, const Problem& problem, const Solution& solution,
                        const std::filesystem::path& folder) {
     std::string text = verdict + "\n\n";
-    text += row("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
+    text += table_row("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
                                       solution.algorithm, text_of(solution.objective), solution.seed));
     if (solution.execution_world) {
-        text += row("world", fmt::format("{} of seed {}; the certificate and the search are those of the plan",
+        text += table_row("world", fmt::format("{} of seed {}; the certificate and the search are those of the plan",
                                          solution.execution_world->index, solution.execution_world->seed));
     }
     if (solution.order) {
@@ -240,49 +235,49 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     }
     if (solution.safe_stops) {
         const double share = solution.safe_stops->share_without;
-        text += row("stops", share > 0 ? fmt::format("none is known to be safe for {:.1f} % of the way", 100 * share)
+        text += table_row("stops", share > 0 ? fmt::format("none is known to be safe for {:.1f} % of the way", 100 * share)
                                        : "safe all along the way");
     }
     const SearchRecord& record = solution.planning;
-    text += row("first solution",
+    text += table_row("first solution",
                 record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
-    text += row("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
-    text += row("rejected", rejections(record));
+    text += table_row("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
+    text += table_row("rejected", rejections(record));
     if (record.first_certified_wall_s) {
-        text += row("first certified", fmt::format("after {:.3f} s", *record.first_certified_wall_s));
+        text += table_row("first certified", fmt::format("after {:.3f} s", *record.first_certified_wall_s));
     }
     if (solution.nearest_approach_m) {
-        text += row("nearest approach",
+        text += table_row("nearest approach",
                     fmt::format("{:.3f} m from {}", *solution.nearest_approach_m, missed_region(solution)));
     }
     if (solution.obstruction) {
         const Obstruction& o = *solution.obstruction;
-        text += row("stopped by", fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
+        text += table_row("stopped by", fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
                                               o.at[plane::x], o.at[plane::z], o.at[plane::arm] * degrees_per_radian,
                                               o.goal_distance_m, missed_region(solution)));
         const bool is_unfinished =
             solution.certificate && solution.certificate->failures <= CertificateTest::most_failures;
         if (o.cause == "certificate" && is_unfinished) {
-            text += row("", "The time was over before the last plan was flown in enough worlds: give the search more.");
+            text += table_row("", "The time was over before the last plan was flown in enough worlds: give the search more.");
         } else if (o.cause == "certificate") {
-            text += row("", "The planner discarded every plan: in worlds that the search had not seen");
-            text += row("", "each failed too often. `downwash solve --remedies` tries what would help.");
+            text += table_row("", "The planner discarded every plan: in worlds that the search had not seen");
+            text += table_row("", "each failed too often. `downwash solve --remedies` tries what would help.");
         } else if (o.cause == "unfinished_flight") {
-            text += row("", "A flight with direct aerodynamics takes long in this scene: give the search more time.");
+            text += table_row("", "A flight with direct aerodynamics takes long in this scene: give the search more time.");
         } else if (o.cause == "direct_flight") {
-            text += row("", "The planner discarded every plan: executed with direct aerodynamics,");
-            text += row("", "the last one failed or came nearer to an obstacle than the margin.");
+            text += table_row("", "The planner discarded every plan: executed with direct aerodynamics,");
+            text += table_row("", "the last one failed or came nearer to an obstacle than the margin.");
         } else if (o.goal_distance_m <= 0) {
-            text += row("", "The vehicle reached " + missed_region(solution) + " but could not hover there.");
-            text += row("", "Run `downwash aeromap hold` to check whether a hover is stable.");
+            text += table_row("", "The vehicle reached " + missed_region(solution) + " but could not hover there.");
+            text += table_row("", "Run `downwash aeromap hold` to check whether a hover is stable.");
         }
     }
-    text += row("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
+    text += table_row("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
     if (std::error_code ignored; std::filesystem::exists(folder / run_page_name, ignored)) {
-        text += row("page", (folder / run_page_name).string());
+        text += table_row("page", (folder / run_page_name).string());
     }
     if (const std::string others = other_files_in(folder); !others.empty()) {
-        text += row("kept", others + ": of before, not of this run");
+        text += table_row("kept", others + ": of before, not of this run");
     }
     return text;
 }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "downwash/base/files.hpp"
@@ -72,10 +73,7 @@ std::string other_files_in(const fs::path& folder) {
     }
     std::sort(names.begin(), names.end());
     constexpr std::size_t shown = 3;
-    std::string text;
-    for (std::size_t i = 0; i < std::min(names.size(), shown); ++i) {
-        text += (i > 0 ? ", " : "") + excerpt(names[i]);
-    }
+    const std::string text = joined(std::span(names).first(std::min(names.size(), shown)), ", ", excerpt);
     return names.size() > shown ? text + fmt::format(" and {} more", names.size() - shown) : text;
 }
 

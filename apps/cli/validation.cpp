@@ -13,10 +13,6 @@ namespace {
 
 constexpr std::size_t most_shown = 5;  ///< parameters and worst worlds in the table
 
-Json finite(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
 Json json_of(const judge::Disagreement::Value& value) {
     return std::visit([](const auto& of) { return Json(of); }, value);
 }
@@ -62,10 +58,6 @@ void add_runs(Json& document, const judge::WorldRuns& worlds) {
     }
 }
 
-std::string row(const std::string& name, const std::string& value) {
-    return fmt::format("  {:<16}  {}\n", name, value);
-}
-
 std::string metres(double value) {
     return std::isfinite(value) ? to_fixed_text(value, 3) + " m" : "no obstacles";
 }
@@ -109,13 +101,13 @@ std::string interval(const char* what, std::size_t count, std::size_t runs, cons
 std::string text_of(const judge::WorldRuns& worlds, const std::string& fly_one) {
     const std::size_t runs = worlds.runs.size();
     std::string text;
-    text += row("failures", interval("worlds", worlds.failures, runs, worlds.failure_probability));
-    text += row("collisions", interval("worlds", worlds.collisions, runs, worlds.collision_probability));
-    text += row("clearance", fmt::format("p01 {}, p10 {}, p50 {}", metres(worlds.clearance_p01_m),
+    text += table_row("failures", interval("worlds", worlds.failures, runs, worlds.failure_probability));
+    text += table_row("collisions", interval("worlds", worlds.collisions, runs, worlds.collision_probability));
+    text += table_row("clearance", fmt::format("p01 {}, p10 {}, p50 {}", metres(worlds.clearance_p01_m),
                                          metres(worlds.clearance_p10_m), metres(worlds.clearance_p50_m)));
-    text += row("tracking error", fmt::format("p50 {}, p90 {}, p99 {}", metres(worlds.tracking_error_m[0]),
+    text += table_row("tracking error", fmt::format("p50 {}, p90 {}, p99 {}", metres(worlds.tracking_error_m[0]),
                                               metres(worlds.tracking_error_m[1]), metres(worlds.tracking_error_m[2])));
-    text += row("energy of runs", fmt::format("p50 {:.6g} J, p90 {:.6g} J, p99 {:.6g} J", worlds.energy_j[0],
+    text += table_row("energy of runs", fmt::format("p50 {:.6g} J, p90 {:.6g} J, p99 {:.6g} J", worlds.energy_j[0],
                                               worlds.energy_j[1], worlds.energy_j[2]));
     std::vector<judge::Sensitivity> ranked = worlds.sensitivity;
     std::stable_sort(ranked.begin(), ranked.end(), [](const judge::Sensitivity& a, const judge::Sensitivity& b) {
@@ -123,16 +115,16 @@ std::string text_of(const judge::WorldRuns& worlds, const std::string& fly_one) 
     });
     for (std::size_t i = 0; i < std::min(most_shown, ranked.size()); ++i) {
         if (ranked[i].rank_correlation) {
-            text += row(i == 0 ? "matters most" : "", fmt::format("{:<28} rank correlation with clearance {:+.2f}",
+            text += table_row(i == 0 ? "matters most" : "", fmt::format("{:<28} rank correlation with clearance {:+.2f}",
                                                                   ranked[i].parameter, *ranked[i].rank_correlation));
         }
     }
     for (std::size_t i = 0; i < std::min(most_shown, worlds.worst.size()); ++i) {
         const judge::WorldRun& run = worlds.worst[i];
-        text += row(i == 0 ? "worst worlds" : "", fmt::format("{:<8} {}, clearance {}", run.world, name_of(run.outcome),
+        text += table_row(i == 0 ? "worst worlds" : "", fmt::format("{:<8} {}, clearance {}", run.world, name_of(run.outcome),
                                                               metres(run.min_clearance_m)));
     }
-    text += row("see one", fmt::format("{} {}", fly_one, worlds.worst.front().world));
+    text += table_row("see one", fmt::format("{} {}", fly_one, worlds.worst.front().world));
     return text;
 }
 
@@ -163,19 +155,19 @@ std::string text_of(const Validation& validation, const std::string& fly_one) {
     const judge::JudgedFlight& flight = validation.flight;
     std::string text = verdict_of(validation) + "\n\n";
     if (validation.world) {
-        text += row("world", std::to_string(*validation.world));
+        text += table_row("world", std::to_string(*validation.world));
     }
-    text += row("flight", std::string(name_of(flight.outcome)));
-    text += row("duration", fmt::format("{:.2f} s", flight.duration_s));
-    text += row("energy", fmt::format("{:.6g} J", flight.energy_j));
-    text += row("goal error", metres(flight.goal_error_m));
-    text += row("min. clearance", metres(flight.min_clearance_m));
+    text += table_row("flight", std::string(name_of(flight.outcome)));
+    text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
+    text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
+    text += table_row("goal error", metres(flight.goal_error_m));
+    text += table_row("min. clearance", metres(flight.min_clearance_m));
     if (!validation.has_flight_claims) {
-        text += row("file", "says nothing about a flight; only its plan was checked");
+        text += table_row("file", "says nothing about a flight; only its plan was checked");
     }
     for (std::size_t i = 0; i < validation.disagreements.size(); ++i) {
         const judge::Disagreement& each = validation.disagreements[i];
-        text += row(i == 0 ? "disagreements" : "", fmt::format("{}: the file says {}, the judge finds {}", each.what,
+        text += table_row(i == 0 ? "disagreements" : "", fmt::format("{}: the file says {}, the judge finds {}", each.what,
                                                                text_of(each.file), text_of(each.judge)));
     }
     if (validation.worlds) {

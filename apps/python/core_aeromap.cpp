@@ -99,12 +99,7 @@ std::vector<MapLayer> layers_of(const Problem& problem) {
 CoreMap read(const std::string& file, const CoreProblem& of) {
     constexpr std::size_t max_bytes = std::size_t{1} << 31U;
     const Problem& problem = of.problem();
-    std::string bytes;
-    try {
-        bytes = read_whole_file(file, max_bytes);
-    } catch (const FileError& error) {
-        throw_input_error(file + " " + error.what());
-    }
+    const std::string bytes = naming(file, [&] { return read_whole_file(file, max_bytes); });
     std::optional<AeroMap> map = AeroMap::from_bytes(layers_of(problem), problem.plane,
                                                      rotor_extent(problem.robot.rotors, problem.bounds), bytes);
     if (!map) {
@@ -116,11 +111,7 @@ CoreMap read(const std::string& file, const CoreProblem& of) {
 }
 
 void write(const CoreMap& of, const std::string& file) {
-    try {
-        write_file(file, of.map->to_bytes());
-    } catch (const FileError& error) {
-        throw_input_error(file + " " + error.what());
-    }
+    naming(file, [&] { write_file(file, of.map->to_bytes()); });
 }
 
 py::array_t<double> map_factor(const CoreMap& of, const Points& points, int rotor, int threads) {

@@ -113,13 +113,7 @@ class Placement {
 
     /// Whether no name, leader or taken line is in a box.
     [[nodiscard]] bool is_free(const Bounds& box) const {
-        return holds(ground_.area, box) &&
-               std::none_of(
-                   labels_.begin(), labels_.end(),
-                   [&](const PlacedLabel& label) {
-                       return meet(label.box, box) ||
-                              (label.leader && crosses({label.leader->first, label.leader->second}, false, box));
-                   }) &&
+        return holds(ground_.area, box) && is_free_of_names(box) &&
                std::none_of(ground_.taken.begin(), ground_.taken.end(),
                             [&](const Ring& line) { return covers_line(line, box); });
     }
@@ -186,22 +180,19 @@ class Placement {
             const PlanePoint a = at(k), b = at(k + 1);
             const Bounds piece{std::min(a.x_m, b.x_m) - pixels(1), std::max(a.x_m, b.x_m) + pixels(1),
                                std::min(a.z_m, b.z_m) - pixels(1), std::max(a.z_m, b.z_m) + pixels(1)};
-            if (!is_free_of_lines(piece) || covers_others(piece, own)) {
+            if (!is_free_of_names(piece) || any_crosses(ground_.taken, false, piece) || covers_others(piece, own)) {
                 return true;
             }
         }
         return false;
     }
 
-    [[nodiscard]] bool is_free_of_lines(const Bounds& piece) const {
-        return std::none_of(
-                   labels_.begin(), labels_.end(),
-                   [&](const PlacedLabel& label) {
-                       return meet(label.box, piece) ||
-                              (label.leader && crosses({label.leader->first, label.leader->second}, false, piece));
-                   }) &&
-               std::none_of(ground_.taken.begin(), ground_.taken.end(),
-                            [&](const Ring& line) { return crosses(line, false, piece); });
+    /// Whether no name or leader is in a box.
+    [[nodiscard]] bool is_free_of_names(const Bounds& box) const {
+        return std::ranges::none_of(labels_, [&](const PlacedLabel& label) {
+            return meet(label.box, box) ||
+                   (label.leader && crosses({label.leader->first, label.leader->second}, false, box));
+        });
     }
 
     /// Middles of boxes around a shape, `gap_m` away from it, the best first.

@@ -69,7 +69,7 @@ void run(const Options& options) {
     solve_options.on_progress = [&](const Progress& progress) {
         for (Stage& stage : stages) {
             if (stage.covers(progress.nodes)) {
-                stage.note(progress.iterations, bench::thread_time_s(), bench::memory_bytes() - before);
+                stage.note(progress.iterations, bench::processor_time_s(), bench::memory_bytes() - before);
             }
         }
         if (progress.nodes > stages.back().nodes * 11 / 10) {

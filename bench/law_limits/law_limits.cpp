@@ -39,47 +39,38 @@ struct Surface {
 constexpr Surface surfaces[] = {{"ceiling, the arm hanging", true, std::numbers::pi / 2},
                                 {"floor, the arm up", false, -std::numbers::pi / 2}};
 
-struct Kind {
-    const char* name;
-    std::string_view type;  ///< type of the law; empty: the robot file's
-    double observer_1_s;    ///< 0: none
+/// The first stands for the law of the robot file.
+constexpr std::string_view laws[] = {ModelInversion::name, CascadedPid::name, PlanarLyapunov::name};
+
+/// What a law has beside its loops.
+struct Beside {
+    std::string_view name;
+    double observer_1_s;  ///< 0: none
     bool reads;
 };
-constexpr Kind kinds[] = {{"model-inversion", "", 0, false},
-                          {"+ observer, 3 1/s", "", 3, false},
-                          {"+ observer, 10 1/s", "", 10, false},
-                          {"+ feed-forward", "", 0, true},
-                          {"+ feed-forward, observer 3 1/s", "", 3, true},
-                          {"+ feed-forward, observer 10 1/s", "", 10, true},
-                          {"cascaded-pid", "cascaded-pid", 0, false},
-                          {"+ observer, 3 1/s", "cascaded-pid", 3, false},
-                          {"+ observer, 10 1/s", "cascaded-pid", 10, false},
-                          {"+ feed-forward", "cascaded-pid", 0, true},
-                          {"+ feed-forward, observer 3 1/s", "cascaded-pid", 3, true},
-                          {"+ feed-forward, observer 10 1/s", "cascaded-pid", 10, true},
-                          {"lyapunov", "lyapunov", 0, false},
-                          {"+ observer, 3 1/s", "lyapunov", 3, false},
-                          {"+ observer, 10 1/s", "lyapunov", 10, false},
-                          {"+ feed-forward", "lyapunov", 0, true},
-                          {"+ feed-forward, observer 3 1/s", "lyapunov", 3, true},
-                          {"+ feed-forward, observer 10 1/s", "lyapunov", 10, true}};
+constexpr Beside all_beside[] = {{"", 0, false},
+                                 {"+ observer, 3 1/s", 3, false},
+                                 {"+ observer, 10 1/s", 10, false},
+                                 {"+ feed-forward", 0, true},
+                                 {"+ feed-forward, observer 3 1/s", 3, true},
+                                 {"+ feed-forward, observer 10 1/s", 10, true}};
 
-/// The law of a robot file, or another with its defaults, with what the kind adds.
-Robot equipped(Robot robot, const Kind& kind, double offset_z_m) {
+/// The law of a robot file, or another with its defaults, with what stands beside it.
+Robot equipped(Robot robot, std::string_view law_name, const Beside& beside, double offset_z_m) {
     const double rotor_lead = std::visit([](const auto& own) { return own.rotor_lead; }, robot.controller.law);
-    if (kind.type == CascadedPid::name) {
+    if (law_name == CascadedPid::name) {
         robot.controller.law = CascadedPid{};
-    } else if (kind.type == PlanarLyapunov::name) {
+    } else if (law_name == PlanarLyapunov::name) {
         robot.controller.law = PlanarLyapunov{};
     }
     std::visit([&](auto& law) { law.rotor_lead = rotor_lead; }, robot.controller.law);
     std::visit(
         [&](auto& law) {
             law.aids = {};
-            if (kind.observer_1_s > 0) {
-                law.aids.observer = controllers::DisturbanceObserver{kind.observer_1_s};
+            if (beside.observer_1_s > 0) {
+                law.aids.observer = controllers::DisturbanceObserver{beside.observer_1_s};
             }
-            if (kind.reads) {
+            if (beside.reads) {
                 law.aids.feed_forward = controllers::FeedForward{0, offset_z_m};
             }
         },
@@ -179,20 +170,23 @@ void print_table(const Problem& problem, Robot robot, const Surface& surface, do
     fmt::print("\n## {}, {}, rotor lag {:.0f} ms\n\n", robot.name, surface.name, 1e3 * lag_s);
     fmt::print("| law | right | 1 cm far | 3 cm far | 5 cm far | 1 cm near | 3 cm near | 5 cm near |\n");
     fmt::print("|---|---:|---:|---:|---:|---:|---:|---:|\n");
-    for (const Kind& kind : kinds) {
-        fmt::print("| {} |", kind.name);
-        for (const double offset_m : offsets_m) {
-            if (offset_m != 0 && !kind.reads) {
-                fmt::print(" |");
-                continue;
+    for (const std::string_view law : laws) {
+        for (const Beside& beside : all_beside) {
+            const std::string_view name = beside.name.empty() ? law : beside.name;
+            fmt::print("| {} |", name);
+            for (const double offset_m : offsets_m) {
+                if (offset_m != 0 && !beside.reads) {
+                    fmt::print(" |");
+                    continue;
+                }
+                const double offset_z_m = surface.is_above ? offset_m : -offset_m;
+                const std::string of =
+                    fmt::format("{}, {}, lag {} s, {}, offset {} m", robot.name, surface.name, lag_s, name, offset_m);
+                const Place place(problem, equipped(robot, law, beside, offset_z_m), surface);
+                fmt::print(" {} |", limit_text(place, of, trials));
             }
-            const double offset_z_m = surface.is_above ? offset_m : -offset_m;
-            const std::string of =
-                fmt::format("{}, {}, lag {} s, {}, offset {} m", robot.name, surface.name, lag_s, kind.name, offset_m);
-            const Place place(problem, equipped(robot, kind, offset_z_m), surface);
-            fmt::print(" {} |", limit_text(place, of, trials));
+            fmt::print("\n");
         }
-        fmt::print("\n");
     }
 }
 

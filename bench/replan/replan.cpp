@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../support/measuring.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/planner/planner.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -100,11 +101,7 @@ std::optional<Problem> changed(Problem problem, const SceneChange& change, const
 }
 
 std::string listed(const std::map<std::string, int>& counts) {
-    std::string text;
-    for (const auto& [name, count] : counts) {
-        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
-    }
-    return text;
+    return joined(counts, ", ", [](const auto& each) { return fmt::format("{} {}", each.second, each.first); });
 }
 
 double share(const std::vector<double>& values, double limit) {

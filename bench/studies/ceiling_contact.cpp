@@ -41,16 +41,13 @@ const std::vector<std::string> columns{"flight", "delay on leaving [s]", "oversh
                                        "greatest depth in the ceiling [mm]"};
 
 /// A flight to be made, and its name.
-struct Case {
+template <class Experiment>
+struct CaseOf {
     std::string name;
-    CeilingExperiment experiment;
+    Experiment experiment;
 };
-
-/// A mission to be flown, and its name.
-struct InspectionCase {
-    std::string name;
-    CeilingInspection experiment;
-};
+using Case = CaseOf<CeilingExperiment>;
+using InspectionCase = CaseOf<CeilingInspection>;
 
 template <class OneCase>
 auto flown(const std::vector<OneCase>& cases) {

@@ -4,28 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
+#include "downwash/base/csv_lines.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/studies/study_page.hpp"
 
 namespace downwash::studies {
 namespace {
 
-std::string joined(const std::vector<std::string>& cells, std::string_view separator) {
-    std::string line;
-    for (const std::string& cell : cells) {
-        line += (line.empty() ? "" : std::string(separator)) + cell;
-    }
-    return line;
-}
-
-/// Cells with commas stand in quotes (RFC 4180). No cell holds a quote.
-std::string csv_row(std::vector<std::string> cells) {
-    for (std::string& cell : cells) {
-        if (cell.find(',') != std::string::npos) {
-            cell.insert(cell.begin(), '"');
-            cell.push_back('"');
-        }
-    }
-    return joined(cells, ",") + "\n";
+std::string csv_row(const std::vector<std::string>& cells) {
+    return joined(cells, ",", csv_cell) + "\n";
 }
 
 std::string csv_of(const Table& table) {

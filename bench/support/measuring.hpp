@@ -1,13 +1,14 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <ctime>
 #include <functional>
 #include <string>
 
 namespace downwash::bench {
 
-/// Processor time of the calling thread [s].
-double thread_time_s();
+/// Processor time by one of the system's clocks [s]: that of the calling thread unless told.
+double processor_time_s(clockid_t clock = CLOCK_THREAD_CPUTIME_ID);
 
 /// The memory of this process [bytes]; negative where the system does not say.
 double memory_bytes();

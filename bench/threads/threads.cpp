@@ -32,12 +32,6 @@ struct Given {
     std::uint32_t seeds = 2;
 };
 
-double process_time_s() {
-    timespec now{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 /// Time that all processors have worked since the machine started [s]; 0 where the system does not say.
 double machine_busy_s() {
     std::ifstream stat("/proc/stat");
@@ -63,10 +57,10 @@ struct Took {
 template <class Work>
 Took timed(const Work& work) {
     const auto begin = std::chrono::steady_clock::now();
-    const double processor_0 = process_time_s(), busy_0 = machine_busy_s();
+    const double processor_0 = processor_time_s(CLOCK_PROCESS_CPUTIME_ID), busy_0 = machine_busy_s();
     work();
     Took took{std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
-              process_time_s() - processor_0, 0};
+              processor_time_s(CLOCK_PROCESS_CPUTIME_ID) - processor_0, 0};
     took.others_s = std::max(0.0, machine_busy_s() - busy_0 - took.processor_s);
     return took;
 }

@@ -10,8 +10,8 @@
 
 #include "../support/scratch_folder.hpp"
 #include "../support/test_problem.hpp"
+#include "campaign_results.hpp"
 #include "downwash/bench/campaign_run.hpp"
-#include "downwash/bench/campaign_store.hpp"
 
 namespace downwash::test {
 

@@ -6,11 +6,22 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "campaign_results.hpp"
+
 using namespace downwash;
 using namespace downwash::bench;
 using Catch::Contains;
 
 namespace {
+
+CampaignReport report_of(const CampaignResults& results) {
+    FiguresMaker maker;
+    std::vector<RunFigures> runs;
+    for (const Run& run : results.runs) {
+        runs.push_back(maker.figures_of(run));
+    }
+    return bench::report_of(results.plan, runs);
+}
 
 Run unsolved(std::size_t planner, std::uint32_t seed, RunStatus status) {
     Run run;

@@ -91,10 +91,10 @@ struct Flight {
 
 template <class Around>
 Flight flown_under(const SpaceModel<0>& model, const CeilingContact& contact, const State& start,
-                   const Command& command, int ticks, const Around& around, const dynamics::ContactSteps& steps = {}) {
+                   const Command& command, int ticks, const Around& around, double step_share = 1) {
     Flight flight{start};
     for (int i = 0; i < ticks; ++i) {
-        const auto tick = dynamics::contact_tick(model, contact, flight.state, command, 0.01, around, steps);
+        const auto tick = dynamics::contact_tick(model, contact, flight.state, command, 0.01, around, step_share);
         flight.state = tick.state;
         flight.impulse_n_s += tick.normal_impulse_n_s;
         flight.max_depth_m = std::max(flight.max_depth_m, tick.max_depth_m);
@@ -211,9 +211,7 @@ TEST_CASE("Half the step changes the impulse of an impact by less than one per c
         if (probe.impulse_n_s == 0) {
             continue;
         }
-        dynamics::ContactSteps half;
-        half.share = 0.5;
-        const Flight finer = flown_under(model, contact, start, lift(0.5 * mass_kg * 9.80665), 60, Suction{}, half);
+        const Flight finer = flown_under(model, contact, start, lift(0.5 * mass_kg * 9.80665), 60, Suction{}, 0.5);
         worst = std::max(worst, std::abs(finer.impulse_n_s / probe.impulse_n_s - 1));
         CHECK(finer.steps > probe.steps);
     }

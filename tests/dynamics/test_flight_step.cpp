@@ -148,7 +148,8 @@ TEST_CASE("Allocation is the pseudo-inverse for any layout, centred or not") {
     for (int n = 0; n < 10'000; ++n) {
         const RandomPlant plant(random);
         const PlantModel& model = plant.model;
-        if (!allocation_has_full_rank(plant.rotors)) {
+        const auto [rear, front] = std::minmax_element(model.rotor_x_m, model.rotor_x_m + model.rotor_count);
+        if (*front - *rear < 1e-3) {  // no layout that robot_errors() accepts
             continue;
         }
         const double thrust_n = random.uniform(0, 100);
@@ -186,21 +187,6 @@ TEST_CASE("Allocation is the pseudo-inverse for any layout, centred or not") {
     dynamics::allocate(model, 40.0, 3.0, share);
     for (int i = 0; i < 4; ++i) {
         CHECK(share[i] == Approx(40.0 / 4 - model.rotor_x_m[i] * 3.0 / (4 * 0.32 * 0.32)));
-    }
-}
-
-TEST_CASE("A layout whose rotors share one lever cannot command thrust and torque apart") {
-    const auto can_command = [](const std::vector<double>& x_m) {
-        RotorParameters rotors;
-        for (const double x : x_m) {
-            rotors.positions_m.push_back({x, 0, 0});
-        }
-        return allocation_has_full_rank(rotors);
-    };
-    CHECK(can_command({0.3, -0.3}));
-    CHECK(can_command({0.1, 0.2, 0.3}));
-    for (const auto& x_m : std::vector<std::vector<double>>{{0, 0, 0, 0}, {0.3, 0.3, 0.3}, {0.3}, {}}) {
-        CHECK_FALSE(can_command(x_m));
     }
 }
 
