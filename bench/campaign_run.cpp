@@ -69,10 +69,14 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"evaluation_worlds", std::to_string(c.evaluation_worlds)},
         {"variants", joined(c.variants, " ", [](Variant v) { return downwash::name_of(v); })},
         {"algorithms", joined(c.algorithms, " ")},
-        {"objectives",
-         c.objectives ? joined(*c.objectives, " ", [](Objective o) { return downwash::name_of(o); }) : "each problem's own"},
-        {"margins_m", c.margins_m ? joined(*c.margins_m, " ", [](double m) { return to_text(m); }) : "each problem's own"},
-        {"parameters", c.parameters.empty() ? "each problem's own" : joined(c.parameters, " ", [](const ParameterValues& set) { return "{" + text_of(set) + "}"; })},
+        {"objectives", c.objectives ? joined(*c.objectives, " ", [](Objective o) { return downwash::name_of(o); })
+                                    : "each problem's own"},
+        {"margins_m",
+         c.margins_m ? joined(*c.margins_m, " ", [](double m) { return to_text(m); }) : "each problem's own"},
+        {"parameters",
+         c.parameters.empty()
+             ? "each problem's own"
+             : joined(c.parameters, " ", [](const ParameterValues& set) { return "{" + text_of(set) + "}"; })},
         {"seeds", seeds_text(c.seeds.all())}};
     if (!is_sharded) {  // continued on this computer only
         settings.insert(settings.begin() + 4, {{"host", host_name()}, {"processor", processor()}});

@@ -129,14 +129,14 @@ std::string csv_of(const CampaignReport& report) {
     for (const CellFigures& cell : report.cells) {
         const Experiment& experiment = plan.experiments[cell.experiment];
         const PlannerSetup& planner = plan.planners[cell.planner];
-        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", csv_cell(experiment.problem),
-                            csv_cell(experiment.objective), downwash::name_of(planner.variant), csv_cell(planner.algorithm),
-                            csv_cell(text_of(planner.parameters)), planner.margin_m ? csv_number(*planner.margin_m) : "",
-                            cell.solved.attempts, cell.missing, csv_share(cell.solved), csv_share(cell.failed_flights),
-                            csv_share(cell.held), cell.discarded, csv_number(cell.min_clearance_m),
-                            csv_spread(cell.first_solution_s), csv_spread(cell.verified_s), csv_spread(cell.answer_s),
-                            csv_spread(cell.flown_cost), csv_worlds(cell.in_worlds),
-                            report.processor_models() > 0 ? std::to_string(report.processor_models()) : "");
+        text += fmt::format(
+            "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\r\n", csv_cell(experiment.problem),
+            csv_cell(experiment.objective), downwash::name_of(planner.variant), csv_cell(planner.algorithm),
+            csv_cell(text_of(planner.parameters)), planner.margin_m ? csv_number(*planner.margin_m) : "",
+            cell.solved.attempts, cell.missing, csv_share(cell.solved), csv_share(cell.failed_flights),
+            csv_share(cell.held), cell.discarded, csv_number(cell.min_clearance_m), csv_spread(cell.first_solution_s),
+            csv_spread(cell.verified_s), csv_spread(cell.answer_s), csv_spread(cell.flown_cost),
+            csv_worlds(cell.in_worlds), report.processor_models() > 0 ? std::to_string(report.processor_models()) : "");
     }
     return text;
 }

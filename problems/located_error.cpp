@@ -10,6 +10,7 @@ std::string to_text(const LocatedError& error) {
 }
 
 ProblemFileError::ProblemFileError(std::vector<LocatedError> errors)
-    : std::runtime_error(joined(errors, "\n", [](const LocatedError& each) { return to_text(each); })), errors_(std::move(errors)) {}
+    : std::runtime_error(joined(errors, "\n", [](const LocatedError& each) { return to_text(each); })),
+      errors_(std::move(errors)) {}
 
 }  // namespace downwash

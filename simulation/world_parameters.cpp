@@ -182,16 +182,16 @@ std::vector<KeyError> uncertainty_errors(const Uncertainty& uncertainty, const R
         errors.push_back({"uncertainty.vehicle.rotor_time_constant_s",
                           "is uncertain for rotors without a lag: give the robot its rotors.time_constant_s first"});
     } else if (lag_s > 0 && lags_s[0] < 0.5 * tick_s) {
-        errors.push_back({"uncertainty.vehicle.rotor_time_constant_s", "reaches down to " + to_text(lags_s[0], 4) +
-                                                               " s: expected at least half a control tick, " +
-                                                               to_text(0.5 * tick_s, 4) + " s"});
+        errors.push_back({"uncertainty.vehicle.rotor_time_constant_s",
+                          "reaches down to " + to_text(lags_s[0], 4) + " s: expected at least half a control tick, " +
+                              to_text(0.5 * tick_s, 4) + " s"});
     }
     const auto delays_s = ends_of(uncertainty.delay_s, robot.controller.delay_s);
     if (delays_s[0] < 0 || delays_s[1] > simulation::max_delay_ticks * tick_s * (1 + 1e-9)) {
-        errors.push_back({"uncertainty.vehicle.delay_s", "reaches from " + to_text(delays_s[0], 4) + " to " +
-                                                 to_text(delays_s[1], 4) + " s: expected 0 to " +
-                                                 std::to_string(simulation::max_delay_ticks) + " control ticks, " +
-                                                 to_text(simulation::max_delay_ticks * tick_s, 4) + " s"});
+        errors.push_back({"uncertainty.vehicle.delay_s",
+                          "reaches from " + to_text(delays_s[0], 4) + " to " + to_text(delays_s[1], 4) +
+                              " s: expected 0 to " + std::to_string(simulation::max_delay_ticks) + " control ticks, " +
+                              to_text(simulation::max_delay_ticks * tick_s, 4) + " s"});
     }
     return errors;
 }

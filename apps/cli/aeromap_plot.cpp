@@ -36,9 +36,8 @@ constexpr std::array<FieldKind, 6> field_kinds{{
 }};
 
 std::string kinds_text() {
-    return joined(field_kinds, ", ", [](const FieldKind& kind) {
-        return fmt::format("{} ({})", kind.name, kind.description);
-    });
+    return joined(field_kinds, ", ",
+                  [](const FieldKind& kind) { return fmt::format("{} ({})", kind.name, kind.description); });
 }
 
 /// What a request asks to show.

@@ -70,10 +70,11 @@ std::string order_rows(const VisitOrder& order, bool has_plan, const std::option
     }
     std::string text = table_row("order", visits.empty() ? "none: no target is visited" : "targets " + visits);
     if (!visits.empty()) {
-        text += table_row("", !has_plan ? "no plan in that order was found"
-                        : order.is_best
-                            ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
-                            : fmt::format("the cheapest that was found by {} flown legs", order.legs));
+        text +=
+            table_row("", !has_plan ? "no plan in that order was found"
+                          : order.is_best
+                              ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
+                              : fmt::format("the cheapest that was found by {} flown legs", order.legs));
     }
     for (const LeftOutTarget& each : order.left_out) {
         std::string why = "no flight to it was found";
@@ -81,8 +82,8 @@ std::string order_rows(const VisitOrder& order, bool has_plan, const std::option
             why = fmt::format("with it the flight takes about {:.6g} J of {:.6g} J", *each.energy_j,
                               energy_budget_j.value_or(0));
         }
-        text +=
-            table_row(&each == &order.left_out.front() ? "left out" : "", fmt::format("target {}: {}", each.target + 1, why));
+        text += table_row(&each == &order.left_out.front() ? "left out" : "",
+                          fmt::format("target {}: {}", each.target + 1, why));
     }
     return text;
 }
@@ -92,19 +93,20 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
     const std::string_view symbol = unit_of(solution.objective);
     const std::string unit = symbol.empty() ? "" : " " + std::string(symbol);
     text += table_row("flight", fmt::format("{}, {}", name_of(flight.outcome),
-                                      flight.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
-    text += table_row("cost",
-                fmt::format("{:.6g}{} planned, {:.6g}{} executed", solution.cost, unit, solution.execution_cost, unit));
+                                            flight.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
+    text += table_row(
+        "cost", fmt::format("{:.6g}{} planned, {:.6g}{} executed", solution.cost, unit, solution.execution_cost, unit));
     text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
     text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
     text += table_row("goal error", millimetres(flight.goal_error_m));
     if (flight.touch) {
         const TouchRecord& touch = *flight.touch;
-        text += table_row("contact",
-                    touch.touched_s > 0
-                        ? fmt::format("{:.2f} N, off by {:.2f} N at most, {:.0f} W; from {:.2f} to {:.2f} s",
-                                      touch.force_n, touch.force_error_n, touch.power_w, touch.touched_s, touch.left_s)
-                        : "none: the surface was not found");
+        text += table_row(
+            "contact",
+            touch.touched_s > 0
+                ? fmt::format("{:.2f} N, off by {:.2f} N at most, {:.0f} W; from {:.2f} to {:.2f} s", touch.force_n,
+                              touch.force_error_n, touch.power_w, touch.touched_s, touch.left_s)
+                : "none: the surface was not found");
     }
     if (flight.goals.size() > 1) {
         const auto met =
@@ -117,7 +119,7 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
         }
     }
     text += table_row("min. clearance",
-                std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
+                      std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
     return text;
 }
 
@@ -137,15 +139,16 @@ std::string certificate_rows(const Certificate& certificate, const std::filesyst
     }
     std::string text =
         table_row("certificate",
-            fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)",
-                        certificate.is_given ? "given" : "not given", certificate.failures, certificate.worlds,
-                        probability.low, probability.high, 100 * certificate.confidence)) +
+                  fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)",
+                              certificate.is_given ? "given" : "not given", certificate.failures, certificate.worlds,
+                              probability.low, probability.high, 100 * certificate.confidence)) +
         table_row("", "clearance " + millimetres(certificate.clearance_m.p01) + " or more in 99 % of the worlds, " +
-                    millimetres(certificate.clearance_m.p50) + " in half of them");
+                          millimetres(certificate.clearance_m.p50) + " in half of them");
     if (!certificate.causes.empty()) {
         text += table_row("", joined(certificate.causes, ", ", counted) + "; to see one of them:");
-        text += table_row("", fmt::format("downwash execute {} --plan {} --world {}", shell_word(folder / "effective.yaml"),
-                                    shell_word(folder), certificate.worst.front().world));
+        text +=
+            table_row("", fmt::format("downwash execute {} --plan {} --world {}", shell_word(folder / "effective.yaml"),
+                                      shell_word(folder), certificate.worst.front().world));
     }
     return text;
 }
@@ -218,11 +221,12 @@ std::string verdict_on_search(const Solution& solution) {
 std::string summary_of(const std::string& verdict, const Problem& problem, const Solution& solution,
                        const std::filesystem::path& folder) {
     std::string text = verdict + "\n\n";
-    text += table_row("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
-                                      solution.algorithm, text_of(solution.objective), solution.seed));
+    text +=
+        table_row("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
+                                        solution.algorithm, text_of(solution.objective), solution.seed));
     if (solution.execution_world) {
         text += table_row("world", fmt::format("{} of seed {}; the certificate and the search are those of the plan",
-                                         solution.execution_world->index, solution.execution_world->seed));
+                                               solution.execution_world->index, solution.execution_world->seed));
     }
     if (solution.order) {
         text += order_rows(*solution.order, solution.plan.has_value(), problem.energy_budget_j);
@@ -235,12 +239,14 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     }
     if (solution.safe_stops) {
         const double share = solution.safe_stops->share_without;
-        text += table_row("stops", share > 0 ? fmt::format("none is known to be safe for {:.1f} % of the way", 100 * share)
-                                       : "safe all along the way");
+        text +=
+            table_row("stops", share > 0 ? fmt::format("none is known to be safe for {:.1f} % of the way", 100 * share)
+                                         : "safe all along the way");
     }
     const SearchRecord& record = solution.planning;
-    text += table_row("first solution",
-                record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
+    text +=
+        table_row("first solution",
+                  record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
     text += table_row("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
     text += table_row("rejected", rejections(record));
     if (record.first_certified_wall_s) {
@@ -248,22 +254,25 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     }
     if (solution.nearest_approach_m) {
         text += table_row("nearest approach",
-                    fmt::format("{:.3f} m from {}", *solution.nearest_approach_m, missed_region(solution)));
+                          fmt::format("{:.3f} m from {}", *solution.nearest_approach_m, missed_region(solution)));
     }
     if (solution.obstruction) {
         const Obstruction& o = *solution.obstruction;
-        text += table_row("stopped by", fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
-                                              o.at[plane::x], o.at[plane::z], o.at[plane::arm] * degrees_per_radian,
-                                              o.goal_distance_m, missed_region(solution)));
+        text += table_row("stopped by",
+                          fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
+                                      o.at[plane::x], o.at[plane::z], o.at[plane::arm] * degrees_per_radian,
+                                      o.goal_distance_m, missed_region(solution)));
         const bool is_unfinished =
             solution.certificate && solution.certificate->failures <= CertificateTest::most_failures;
         if (o.cause == "certificate" && is_unfinished) {
-            text += table_row("", "The time was over before the last plan was flown in enough worlds: give the search more.");
+            text += table_row(
+                "", "The time was over before the last plan was flown in enough worlds: give the search more.");
         } else if (o.cause == "certificate") {
             text += table_row("", "The planner discarded every plan: in worlds that the search had not seen");
             text += table_row("", "each failed too often. `downwash solve --remedies` tries what would help.");
         } else if (o.cause == "unfinished_flight") {
-            text += table_row("", "A flight with direct aerodynamics takes long in this scene: give the search more time.");
+            text +=
+                table_row("", "A flight with direct aerodynamics takes long in this scene: give the search more time.");
         } else if (o.cause == "direct_flight") {
             text += table_row("", "The planner discarded every plan: executed with direct aerodynamics,");
             text += table_row("", "the last one failed or came nearer to an obstacle than the margin.");

@@ -104,25 +104,27 @@ std::string text_of(const judge::WorldRuns& worlds, const std::string& fly_one) 
     text += table_row("failures", interval("worlds", worlds.failures, runs, worlds.failure_probability));
     text += table_row("collisions", interval("worlds", worlds.collisions, runs, worlds.collision_probability));
     text += table_row("clearance", fmt::format("p01 {}, p10 {}, p50 {}", metres(worlds.clearance_p01_m),
-                                         metres(worlds.clearance_p10_m), metres(worlds.clearance_p50_m)));
-    text += table_row("tracking error", fmt::format("p50 {}, p90 {}, p99 {}", metres(worlds.tracking_error_m[0]),
-                                              metres(worlds.tracking_error_m[1]), metres(worlds.tracking_error_m[2])));
+                                               metres(worlds.clearance_p10_m), metres(worlds.clearance_p50_m)));
+    text += table_row("tracking error",
+                      fmt::format("p50 {}, p90 {}, p99 {}", metres(worlds.tracking_error_m[0]),
+                                  metres(worlds.tracking_error_m[1]), metres(worlds.tracking_error_m[2])));
     text += table_row("energy of runs", fmt::format("p50 {:.6g} J, p90 {:.6g} J, p99 {:.6g} J", worlds.energy_j[0],
-                                              worlds.energy_j[1], worlds.energy_j[2]));
+                                                    worlds.energy_j[1], worlds.energy_j[2]));
     std::vector<judge::Sensitivity> ranked = worlds.sensitivity;
     std::stable_sort(ranked.begin(), ranked.end(), [](const judge::Sensitivity& a, const judge::Sensitivity& b) {
         return std::abs(a.rank_correlation.value_or(0)) > std::abs(b.rank_correlation.value_or(0));
     });
     for (std::size_t i = 0; i < std::min(most_shown, ranked.size()); ++i) {
         if (ranked[i].rank_correlation) {
-            text += table_row(i == 0 ? "matters most" : "", fmt::format("{:<28} rank correlation with clearance {:+.2f}",
-                                                                  ranked[i].parameter, *ranked[i].rank_correlation));
+            text +=
+                table_row(i == 0 ? "matters most" : "", fmt::format("{:<28} rank correlation with clearance {:+.2f}",
+                                                                    ranked[i].parameter, *ranked[i].rank_correlation));
         }
     }
     for (std::size_t i = 0; i < std::min(most_shown, worlds.worst.size()); ++i) {
         const judge::WorldRun& run = worlds.worst[i];
-        text += table_row(i == 0 ? "worst worlds" : "", fmt::format("{:<8} {}, clearance {}", run.world, name_of(run.outcome),
-                                                              metres(run.min_clearance_m)));
+        text += table_row(i == 0 ? "worst worlds" : "", fmt::format("{:<8} {}, clearance {}", run.world,
+                                                                    name_of(run.outcome), metres(run.min_clearance_m)));
     }
     text += table_row("see one", fmt::format("{} {}", fly_one, worlds.worst.front().world));
     return text;
@@ -167,8 +169,9 @@ std::string text_of(const Validation& validation, const std::string& fly_one) {
     }
     for (std::size_t i = 0; i < validation.disagreements.size(); ++i) {
         const judge::Disagreement& each = validation.disagreements[i];
-        text += table_row(i == 0 ? "disagreements" : "", fmt::format("{}: the file says {}, the judge finds {}", each.what,
-                                                               text_of(each.file), text_of(each.judge)));
+        text +=
+            table_row(i == 0 ? "disagreements" : "", fmt::format("{}: the file says {}, the judge finds {}", each.what,
+                                                                 text_of(each.file), text_of(each.judge)));
     }
     if (validation.worlds) {
         text += text_of(*validation.worlds, fly_one);
