@@ -114,7 +114,7 @@ struct Problem {
     PlannerSettings planner;
 
     /// The axes of the vehicle's references.
-    [[nodiscard]] static constexpr std::span<const Axis> axes() noexcept { return planar_axes; }
+    [[nodiscard]] constexpr std::span<const Axis> axes() const noexcept { return planar_axes; }
 };
 
 /// More goals than these, in a row or to choose from, are not planned for.
