@@ -8,7 +8,7 @@ import sys
 import nbformat
 from nbclient import NotebookClient
 
-FOLDER = pathlib.Path(__file__).resolve().parent.parent.parent / "python" / "notebooks"
+FOLDER = pathlib.Path(__file__).resolve().parent.parent.parent / "apps" / "python" / "notebooks"
 
 
 def main() -> int:

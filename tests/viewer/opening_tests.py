@@ -63,7 +63,7 @@ class Opening(page_test.BrowserTest):
 
     def test_building_again_gives_the_same_bytes(self):
         again = os.path.join(page_test.scratch.name, "again")
-        subprocess.run([os.path.join(page_test.HERE, "..", "..", "viewer", "build.sh"), again], check=True)
+        subprocess.run([os.path.join(page_test.HERE, "..", "..", "apps", "viewer", "build.sh"), again], check=True)
         for template in (page_test.arguments.template, page_test.arguments.campaign_template,
                          page_test.arguments.validation_template):
             with open(template, "rb") as one, open(os.path.join(again, os.path.basename(template)), "rb") as other:
