@@ -3,20 +3,18 @@
 # warns of overflows that cannot happen: such warnings are off where headers are precompiled, so sources whose warnings are
 # errors read their headers themselves.
 
-if(CMAKE_CXX_COMPILER_LAUNCHER)
+if(CMAKE_CXX_COMPILER_LAUNCHER OR DOWNWASH_WERROR)
   set(precompiled OFF)
-elseif(DOWNWASH_WERROR)
-  set(precompiled TESTS)
 else()
-  set(precompiled ALL)
+  set(precompiled ON)
 endif()
-set(DOWNWASH_PRECOMPILED ${precompiled} CACHE STRING "Compile headers of libraries once: ALL, TESTS (for the tests only) or OFF")
+option(DOWNWASH_PRECOMPILED "Compile headers of libraries once for all modules" ${precompiled})
 
-# downwash_precompile(NAME HEADERS ... LIBRARIES ... [COLD] [TESTS]): the target NAME precompiles these headers and those of the standard
+# downwash_precompile(NAME HEADERS ... LIBRARIES ... [COLD]): the target NAME precompiles these headers and those of the standard
 # library, for targets to use; see downwash_use_precompiled().
 function(downwash_precompile NAME)
-  cmake_parse_arguments(HEADERS "COLD;TESTS" "" "HEADERS;LIBRARIES" ${ARGN})
-  if(NOT DOWNWASH_PRECOMPILED STREQUAL "ALL" AND NOT (DOWNWASH_PRECOMPILED STREQUAL "TESTS" AND HEADERS_TESTS))
+  cmake_parse_arguments(HEADERS "COLD" "" "HEADERS;LIBRARIES" ${ARGN})
+  if(NOT DOWNWASH_PRECOMPILED)
     return()
   endif()
   file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.cpp CONTENT "") # a target needs a source

@@ -78,8 +78,8 @@ class DOWNWASH_EXPORT GoalSequence {
     const SolveOptions& options_;
     double min_round_;  ///< see the constructor
     std::vector<Goal> goals_;
-    std::vector<std::uint32_t>
-        searches_;  ///< number of searches for the way to each goal so far; each draws other samples
+    /// Number of searches for the way to each goal so far; each draws other samples.
+    std::vector<std::uint32_t> searches_;
     std::vector<std::uint32_t> given_up_;  ///< how many of these took too long
     SearchBudget whole_;
     SearchBudget left_;
