@@ -16,8 +16,8 @@ struct CellRows {
     std::vector<CellSteps> steps;
     std::vector<CellFlyability> flyability;
     std::vector<CellSides> sides;
-    std::vector<float>
-        nodes;  ///< K at the nodes of one cell after the other: of all surfaces, then of those above where both matter
+    /// K at the nodes of one cell after the other: of all surfaces, then of those above where both matter.
+    std::vector<float> nodes;
 };
 
 /// A layer before a part of its scene changed.

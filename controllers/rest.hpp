@@ -23,8 +23,8 @@ namespace controllers {
 
 /// The commands that balance a level vehicle at rest.
 struct RestingCommand {
-    dynamics::RotorWrench<double>
-        wrench;  ///< wrench that acts by what the law knows: with a feed-forward not that in free air
+    /// Wrench that acts by what the law knows: with a feed-forward not that in free air.
+    dynamics::RotorWrench<double> wrench;
     double joint_torque_nm;
     double known_force[4] = {};  ///< what else acts by what the law knows [N, N, N m, N m]: see Unaided::force()
 };

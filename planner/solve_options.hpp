@@ -56,8 +56,8 @@ struct SolveOptions {
     /// their time to cheaper ones; takes a moment for each plan that counts.
     bool finds_stops = false;
     bool keep_tree = false;  ///< also gives the search tree
-    std::shared_ptr<const AeroMap>
-        map;  ///< reuses a map of the same problem, else std::invalid_argument; built when empty
+    /// Reuses a map of the same problem, else std::invalid_argument; built when empty.
+    std::shared_ptr<const AeroMap> map;
     std::filesystem::path map_cache;  ///< folder in which maps are kept between runs; empty: nowhere
 };
 

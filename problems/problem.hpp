@@ -104,8 +104,8 @@ struct Problem {
     AeroSettings aero;
     std::optional<Uncertainty> uncertainty;  ///< Nothing: everything is nominal.
     Start start;
-    std::vector<Goal>
-        goals_before;  ///< Goals to be reached and held before `goal`, in this order, without alternatives.
+    /// Goals to be reached and held before `goal`, in this order, without alternatives.
+    std::vector<Goal> goals_before;
     Goal goal;
     std::vector<Goal> targets;  ///< Goals in an order that the planner chooses; any replace `goals_before` and `goal`.
     std::optional<Goal> return_to;          ///< A configuration to be reached and held after the targets.

@@ -21,8 +21,8 @@ struct TiltScore {
 /// The tilt loss fitted to measurements of tilted rotors.
 struct TiltFit {
     TiltScore fitted;
-    std::optional<double>
-        standard_error;  ///< standard error of the loss; empty with a single measurement or at a bound
+    /// Standard error of the loss; empty with a single measurement or at a bound.
+    std::optional<double> standard_error;
     TiltScore as_level;  ///< score with the loss 0
     /// How well, for each source with tilted rotors, the loss fitted to all others predicts it; empty with one source.
     std::vector<std::pair<std::string, TiltScore>> left_out;

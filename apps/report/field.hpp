@@ -45,8 +45,8 @@ struct FieldFigure {
     std::string undefined_name = "not flyable";  ///< legend of the area where the field is not defined
     bool has_contour_lines = true;
     std::vector<ObstacleOutline> obstacles;
-    bool has_names =
-        true;  ///< whether obstacles and points are named, as far as there is room beside field, lines and points
+    /// Whether obstacles and points are named, as far as there is room beside field, lines and points.
+    bool has_names = true;
     std::vector<FigureLines> lines;
     std::vector<FigurePoints> points;
 };
