@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "downwash/planner/world_flights.hpp"
+#include "downwash/search/free_air_cost.hpp"
+#include "downwash/search/line_flights.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight.hpp"
 
@@ -16,13 +18,20 @@ Course Course::from_start(const Problem& problem, const FlightModel& model) {
 }
 
 Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const PlannerModel& model,
-                bool plans_flights) {
-    const std::size_t flown = course.plan.reference.empty() ? 1 : course.plan.reference.size();
+                Variant variant) {
+    std::size_t flown = course.plan.reference.empty() ? 1 : course.plan.reference.size();
+    const std::int64_t begun = course.ticks();
     course.plan = with_hover(course.plan.followed_by(part), goal, *model.flight);
+    if (!plans_flights(variant)) {
+        const double energy_j = course.vehicle.plant.energy_j +
+                                hover_power_w(*model.flight) * static_cast<double>(course.ticks() - begun) * course.plan.tick_s;
+        course.vehicle = following(*model.flight, course.plan.reference.back().point, energy_j);
+        flown = course.plan.reference.size();
+    }
     for (std::size_t knot = flown; knot < course.plan.reference.size(); ++knot) {
         const SegmentFlight flight =
-            fly(*model.flight, model.map.get(), rules_of_execution(), course.plan.segment_to(knot), course.vehicle);
-        if (flight.rejection != Rejection::none && plans_flights) {
+            fly(*model.flight, model.own_map.get(), rules_of_execution(), course.plan.segment_to(knot), course.vehicle);
+        if (flight.rejection != Rejection::none) {
             throw std::logic_error("a part of a plan does not fly as it was planned");
         }
     }

@@ -27,9 +27,8 @@ struct Course {
 };
 
 /// Adds a part's plan and the hold at its end to a course, and flies them in the planner's model.
-/// @param cost of the part, hold included   @param plans_flights what was planned by flights flies as it did; of
-/// MP-ARM's plans nobody has to know where the vehicle gets to, as none of them looks at it
+/// @param cost of the part, hold included   @param variant that planned the part
 [[nodiscard]] Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const PlannerModel& model,
-                              bool plans_flights);
+                              Variant variant);
 
 }  // namespace downwash::planning

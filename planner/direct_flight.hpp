@@ -22,7 +22,7 @@ struct DirectFlight {
                                         const std::vector<Goal>& goals, std::optional<double> energy_budget_j,
                                         const StopCondition& is_over);
 
-/// Whether a plan of MP-ARM-ADA counts after its direct flight: it reaches its goals and keeps the margin.
+/// Whether a plan counts after its direct flight: it reaches its goals and keeps the margin.
 [[nodiscard]] DOWNWASH_EXPORT bool is_good(const Execution& flight, double safety_margin_m);
 
 }  // namespace downwash::planning

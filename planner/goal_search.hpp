@@ -1,6 +1,7 @@
 #pragma once
 
-#include "downwash/planner/flight_search.hpp"
+#include "downwash/base/export.hpp"
+#include "downwash/planner/candidate_check.hpp"
 
 namespace downwash::planning {
 
@@ -8,7 +9,8 @@ namespace downwash::planning {
 /// @param part a problem with a single goal, whose start is at the end of the course before
 /// @param whole the problem that it is a part of, or itself
 /// @return cost and plan from the part's start on; the execution, if there is one, of course and plan together
-[[nodiscard]] SearchResult search_goal(const Problem& part, const Problem& whole, const PlannerModel& model,
-                                       const Course& before, const PlanChecks& checks, const SolveOptions& options);
+[[nodiscard]] DOWNWASH_EXPORT SearchResult search_goal(const Problem& part, const Problem& whole,
+                                                       const PlannerModel& model, const Course& before,
+                                                       const PlanChecks& checks, const SolveOptions& options);
 
 }  // namespace downwash::planning

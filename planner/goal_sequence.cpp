@@ -188,7 +188,7 @@ bool GoalSequence::goes_on_after(SearchResult part) {
         return true;
     }
     round_.courses.push_back(
-        advanced(course, goals_[number], *found.plan, found.cost, model_, problem_.planner.variant != Variant::mp_arm));
+        advanced(course, goals_[number], *found.plan, found.cost, model_, problem_.planner.variant));
     way.plan = round_.courses.back().plan;
     return true;
 }

@@ -42,14 +42,13 @@ SearchResult search_alone(const Problem& problem, const PlannerModel& model, con
 
 SearchResult search_in_order(const Problem& problem, const PlannerModel& model, const SolveOptions& options,
                              double min_round, std::uint64_t attempts) {
-    const bool is_aware = problem.planner.variant == Variant::mp_arm_ada;
     std::optional<ProblemWorlds> worlds;
-    if (problem.uncertainty && is_aware) {
-        worlds.emplace(problem, model.flight, model.map, options);
+    if (problem.uncertainty) {
+        worlds.emplace(problem, model, options);
     }
     std::optional<StopFinder> stop_finder;
-    if (options.finds_stops && is_aware) {
-        stop_finder.emplace(problem, model.flight, model.map,
+    if (options.finds_stops) {
+        stop_finder.emplace(problem, model.flight, model.true_map,
                             problem.uncertainty ? search_worlds(problem) : std::vector<FlownWorld>(), options.threads);
     }
     const PlanChecks checks{worlds ? &*worlds : nullptr, stop_finder ? &*stop_finder : nullptr};

@@ -9,7 +9,7 @@
 
 namespace downwash::planning {
 
-/// Plans the way to one goal, or through several in their order, with what plans of MP-ARM-ADA have to pass: worlds and
+/// Plans the way to one goal, or through several in their order, with what plans have to pass: worlds and
 /// certificates where the problem has an uncertainty, and stops if the options ask for them.
 /// @param problem without targets   @param min_round as for GoalSequence
 /// @param attempts plans that asked for a certificate before

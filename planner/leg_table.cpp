@@ -198,14 +198,10 @@ SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget&
         }
         return result.record;
     }
-    const bool plans_flights = problem_.planner.variant != Variant::mp_arm;
-    Course hover = advanced(*before, place.goal, *found.plan, found.cost, model_, plans_flights);
+    Course hover = advanced(*before, place.goal, *found.plan, found.cost, model_, problem_.planner.variant);
     LegCost cost{found.cost, hover.vehicle.plant.energy_j - before->vehicle.plant.energy_j};
     if (found.execution) {
         cost = {cost_of(*found.execution, problem_.planner.objective), found.execution->energy_j};
-    } else if (!plans_flights) {
-        const double duration_s = hover.plan.duration_s();
-        cost.energy_j = bounds_[to]->hover_energy_j(found.plan->last(), duration_s);
     }
     legs_flown_ += std::isfinite(state.flown.cost) ? 0 : 1;
     state.flown = cost.cost < state.flown.cost ? cost : state.flown;

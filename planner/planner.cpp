@@ -208,13 +208,13 @@ void Planner::drop_visited_goals(std::int64_t tick) {
         problem_.goals_before.begin() + std::min<std::ptrdiff_t>(visited, std::ssize(problem_.goals_before)));
 }
 
-bool Planner::plans_in_worlds() const {
-    return problem_.uncertainty && problem_.planner.variant == Variant::mp_arm_ada;
+bool Planner::certifies() const {
+    return problem_.uncertainty && problem_.planner.certify;
 }
 
 /// The worlds of a search, which are chosen so that dangers come early; none without an uncertainty.
 std::vector<FlownWorld> Planner::worlds() const {
-    return plans_in_worlds() ? planning::search_worlds(problem_) : std::vector<FlownWorld>{};
+    return problem_.uncertainty ? planning::search_worlds(problem_) : std::vector<FlownWorld>{};
 }
 
 bool Planner::can_keep(const Plan& left, const StopCondition& is_over, double& cost) const {
@@ -328,8 +328,8 @@ void Planner::search(Call& call, const Plan& left) {
     options.known_plan = left;
     options.known_places = places_;
     Solution found = downwash::solve(PlannableProblem{next, model_}, options);
-    // In worlds the plan that is found has a certificate, and what is kept has flown in the worlds of a search only.
-    const bool is_better = found.status == Status::solved && (call.best.advice != Advice::keep || plans_in_worlds() ||
+    // The plan that is found may have a certificate, and what is kept has flown in the worlds of a search only.
+    const bool is_better = found.status == Status::solved && (call.best.advice != Advice::keep || certifies() ||
                                                               found.execution_cost < call.best.cost);
     remember(found);
     if (is_better) {

@@ -114,7 +114,7 @@ class DOWNWASH_EXPORT Planner {
 
     void apply(const SceneChange& change);
     void drop_visited_goals(std::int64_t tick);
-    [[nodiscard]] bool plans_in_worlds() const;
+    [[nodiscard]] bool certifies() const;
     [[nodiscard]] std::vector<FlownWorld> worlds() const;
     [[nodiscard]] std::shared_ptr<const AeroMap> map_around(const Bounds& places) const;
     [[nodiscard]] bool can_keep(const Plan& left, const StopCondition& is_over, double& cost) const;

@@ -14,10 +14,11 @@ namespace downwash {
 
 namespace {
 
-/// The map of the planner's own model; nullptr where surfaces do not act in it.
+/// The map of surface effects, through which MP-ARM-ADA plans and the certificates and stops of every variant are flown;
+/// nullptr where none is needed.
 /// @throws WorkStopped when a stop is requested before it is built
 std::shared_ptr<const AeroMap> map_for(const Problem& problem, const FlightModel& model, const SolveOptions& options) {
-    if (problem.planner.variant != Variant::mp_arm_ada || !problem.aero.enabled) {
+    if (!needs_map(problem, options.finds_stops)) {
         return nullptr;
     }
     if (options.map && !model.matches(*options.map, problem.bounds)) {
@@ -28,16 +29,6 @@ std::shared_ptr<const AeroMap> map_for(const Problem& problem, const FlightModel
     return options.map ? options.map
                        : model.make_map(problem.bounds, options.threads, options.on_map_progress, options.map_cache,
                                         [&options] { return options.stop.stop_requested(); });
-}
-
-/// What becomes in other worlds of a plan that was made for the nominal one alone.
-Certificate compared_in_worlds(const Problem& problem, const std::shared_ptr<const FlightModel>& model,
-                               const Plan& plan, const SolveOptions& options) {
-    const StopCondition is_stopped = [&options] { return options.stop.stop_requested(); };
-    const auto map = problem.aero.enabled
-                         ? model->make_map(problem.bounds, options.threads, {}, options.map_cache, is_stopped)
-                         : nullptr;
-    return planning::ProblemWorlds(problem, model, map, options).certify(plan, 1, is_stopped);
 }
 
 planning::DirectFlight flown(const Problem& problem, const FlightModel& model, const Plan& plan,
@@ -69,7 +60,7 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
         solution.map = map_for(problem, *plannable.model, options);
         const double map_wall_s = solution.map ? map_clock.seconds() : 0;
         const double setup_wall_s = since_call.seconds();
-        const planning::PlannerModel own{plannable.model, solution.map};
+        const planning::PlannerModel own(problem.planner.variant, plannable.model, solution.map);
         planning::SearchResult result = problem.targets.empty() ? planning::search_in_order(problem, own, options)
                                                                 : planning::search_in_any_order(problem, own, options);
         static_cast<Found&>(solution) = std::move(result.found);
@@ -83,10 +74,6 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
             solution.execution = std::move(flight.execution);
             solution.flight_wall_s = flight.wall_s;
         }
-        const bool is_aware = problem.planner.variant == Variant::mp_arm_ada;
-        if (problem.uncertainty && !is_aware && solution.status == Status::solved) {
-            solution.certificate = compared_in_worlds(visited, plannable.model, *solution.plan, options);
-        }
     } catch (const WorkStopped&) {  // there is what was found before
     }
     solution.interrupted = options.stop.stop_requested();
@@ -97,6 +84,11 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
 }
 
 }  // namespace
+
+bool needs_map(const Problem& problem, bool finds_stops) noexcept {
+    const bool certifies = problem.uncertainty && problem.planner.certify;
+    return problem.aero.enabled && (problem.planner.variant == Variant::mp_arm_ada || certifies || finds_stops);
+}
 
 Solution solve(const PlannableProblem& plannable, const SolveOptions& options) {
     return solve_checked(plannable, options, planning::Stopwatch());

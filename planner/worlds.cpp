@@ -51,11 +51,12 @@ constexpr std::uint64_t first_screening = std::uint64_t{1} << 32U;
 
 }  // namespace
 
-ProblemWorlds::ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model,
-                             std::shared_ptr<const AeroMap> map, const SolveOptions& options)
-    : problem_(problem),
-      flights_(problem, std::move(model), std::move(map), options.threads),
-      threads_(options.threads) {}
+ProblemWorlds::ProblemWorlds(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
+    : problem_(problem), flights_(problem, model.flight, model.true_map, options.threads), threads_(options.threads) {
+    if (model.own_map != model.true_map) {
+        in_free_air_ = std::make_unique<WorldFlights>(problem, model.flight, model.own_map, options.threads);
+    }
+}
 
 std::vector<FlownWorld> search_worlds(const Problem& problem) {
     std::vector<FlownWorld> worlds;
@@ -85,7 +86,7 @@ SearchWorlds ProblemWorlds::for_search(const Course& before) {
 /// Nothing for worlds in which the vehicle cannot hover at its start, or fly the course.
 std::vector<std::optional<FlightState>> ProblemWorlds::vehicles_after(const Course& before,
                                                                       std::span<const FlownWorld> worlds) {
-    std::vector<std::optional<FlightState>> vehicles = flights_.starts_in(worlds);
+    std::vector<std::optional<FlightState>> vehicles = own_flights().starts_in(worlds);
     if (before.plan.reference.empty()) {
         return vehicles;
     }
@@ -97,7 +98,7 @@ std::vector<std::optional<FlightState>> ProblemWorlds::vehicles_after(const Cour
             world_of.push_back(i);
         }
     }
-    flights_.advance(jobs, before.plan, 0, before.plan.reference.size() - 1, std::nullopt);
+    own_flights().advance(jobs, before.plan, 0, before.plan.reference.size() - 1, std::nullopt);
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         vehicles[world_of[i]] = jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
     }

@@ -6,6 +6,7 @@
 #include "downwash/base/export.hpp"
 #include "downwash/planner/certificate.hpp"
 #include "downwash/planner/course.hpp"
+#include "downwash/planner/planner_model.hpp"
 #include "downwash/planner/solve_options.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/search/fleet.hpp"
@@ -23,10 +24,9 @@ using WorldCounter = std::function<void(std::uint64_t worlds, std::uint64_t fail
 /// The worlds of a search and the certificates of its plans.
 class DOWNWASH_EXPORT ProblemWorlds {
  public:
-    /// @param map of the planner's own model; nullptr for none   @param options for threads and recorder
+    /// Vehicles of a search are flown in the planner's own model, those of certificates with all surfaces.
     /// @pre problem outlives it, and has an uncertainty
-    ProblemWorlds(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
-                  const SolveOptions& options);
+    ProblemWorlds(const Problem& problem, const PlannerModel& model, const SolveOptions& options);
 
     /// The worlds that a search flies in, and the fleet at the end of the course before it.
     /// @throws InputError when the vehicle cannot hover at its start in some of them
@@ -52,6 +52,7 @@ class DOWNWASH_EXPORT ProblemWorlds {
     [[nodiscard]] std::size_t goals() const noexcept { return flights_.goals().size(); }
 
  private:
+    [[nodiscard]] WorldFlights& own_flights() noexcept { return in_free_air_ ? *in_free_air_ : flights_; }
     [[nodiscard]] std::vector<std::optional<FlightState>> vehicles_after(const Course& before,
                                                                          std::span<const FlownWorld> worlds);
     [[nodiscard]] FlownWorld world(std::uint64_t index) const;
@@ -66,7 +67,8 @@ class DOWNWASH_EXPORT ProblemWorlds {
                       const StopCondition& is_over);
 
     const Problem& problem_;
-    WorldFlights flights_;
+    WorldFlights flights_;                    ///< with surfaces
+    std::unique_ptr<WorldFlights> in_free_air_;  ///< in the planner's own model, where it knows of none
     int threads_;
     std::uint64_t screenings_ = 0;  ///< so far
 };

@@ -31,8 +31,8 @@ constexpr std::array kpiece1{
     AlgorithmParameter{"max_close_samples", 30, 1, 100000, "nodes near the goal that the goal bias draws from", true}};
 constexpr std::array est{goal_bias};
 
-/// RRT* of flights. Work is counted in simulated control ticks.
-constexpr std::array flight_rrt_star{
+/// Our own RRT*. Work is counted in control ticks of the edges.
+constexpr std::array own_rrt_star{
     AlgorithmParameter{"first_goal_bias", 0.4, 0, 1, "share of the samples in the goal region before the first plan"},
     AlgorithmParameter{"goal_bias", 0.1, 0, 1, "share of the samples in the goal region after the first plan"},
     AlgorithmParameter{"local_bias", 0.5, 0, 1,
@@ -66,9 +66,11 @@ constexpr std::array flight_rrt_star{
 
 constexpr std::array table{
     AlgorithmInfo{"rrt-star", "geometric (mp-arm), kinodynamic (mp-arm-da, mp-arm-ada); anytime",
-                  "RRT*: straight edges by OMPL for mp-arm; closed-loop flights as edges for mp-arm-da and mp-arm-ada, "
-                  "parents chosen and nodes rewired by simulated cost",
-                  true, true, line_rrt_star, flight_rrt_star},
+                  "RRT* with refinement, the same for all variants: edges are lines for mp-arm, closed-loop flights for "
+                  "mp-arm-da and mp-arm-ada",
+                  true, true, own_rrt_star, own_rrt_star},
+    AlgorithmInfo{"ompl-rrt-star", "geometric (mp-arm); anytime", "OMPL's RRT*: straight edges", true, false,
+                  line_rrt_star},
     AlgorithmInfo{"rrt-connect", "geometric (mp-arm); ends with the first plan",
                   "OMPL's RRT-Connect: trees of straight edges from start and goal", true, false, line_rrt_connect},
     AlgorithmInfo{"informed-rrt-star", "geometric (mp-arm); anytime",

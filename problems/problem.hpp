@@ -35,6 +35,11 @@ enum class Variant {
 /// Each once, in their order.
 inline constexpr std::array all_variants{Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada};
 
+/// Whether the edges of a variant are flights; those of the other one are lines.
+[[nodiscard]] constexpr bool plans_flights(Variant variant) noexcept {
+    return variant != Variant::mp_arm;
+}
+
 /// Name as in problem files: "mp-arm-ada".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Variant variant);
 
@@ -90,6 +95,9 @@ struct PlannerSettings {
     std::uint64_t worlds = 8;               ///< Worlds that every edge has to survive, the nominal one included, >= 1.
     double max_failure_probability = 0.01;  ///< Limit for a plan that is called solved, in (0, 1).
     double confidence = 0.95;               ///< Confidence of that limit, in (0, 1).
+    bool certify = true;                    ///< Whether only a plan with a certificate counts.
+    /// Whether a plan counts only once it was executed well with direct aerodynamics.
+    bool check_execution = true;
     ParameterValues parameters;             ///< Parameters of the algorithm that differ from their defaults.
 };
 

@@ -91,6 +91,12 @@ void read_planning(JsonReader& reader, const Node& root, Solution& solution) {
             reader.read_count({&value, rejected->key + "." + cause}, record.rejected[cause]);
         }
     }
+    if (const auto candidates = JsonReader::member(*planning, "candidates");
+        candidates && candidates->json->is_object()) {
+        reader.read_count(*candidates, "checked", record.candidates.checked);
+        reader.read_count(*candidates, "failed_execution", record.candidates.failed_execution);
+        reader.read_count(*candidates, "failed_certificate", record.candidates.failed_certificate);
+    }
     // nearest_approach_m and obstruction explain a search without a plan, and there is nothing to read in its file.
 }
 

@@ -107,6 +107,10 @@ Json planning_json(const Found& found, const SearchRecord& record, std::span<con
             {"states_checked", record.states_checked},
             {"improvements", std::move(improvements)},
             {"rejected", record.rejected},
+            {"candidates",
+             {{"checked", record.candidates.checked},
+              {"failed_execution", record.candidates.failed_execution},
+              {"failed_certificate", record.candidates.failed_certificate}}},
             {"nearest_approach_m", number(found.nearest_approach_m)},
             {"obstruction", obstruction_json(found.obstruction, axes)},
             {"goal", found.missed_goal ? Json(*found.missed_goal) : Json()}};

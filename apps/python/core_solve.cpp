@@ -39,7 +39,7 @@ CoreSolution solve_problem(const std::shared_ptr<CoreProblem>& problem, int thre
         options.map = map != nullptr ? map->map : nullptr;
         options.map_cache = cache;
         const Problem& asked = problem->problem();
-        const bool needs_map = asked.planner.variant == Variant::mp_arm_ada && asked.aero.enabled;
+        const bool needs_map = downwash::needs_map(asked, options.finds_stops);
         if (needs_map && options.map != nullptr && !problem->model()->matches(*options.map, asked.bounds)) {
             throw_input_error("is of another scene, robot, model or bounds: expected a map of the same problem", "map");
         }

@@ -57,7 +57,7 @@ ResumablePlanner prepared_planner(std::string_view algorithm, const oc::SpaceInf
 /// The search for a plan and then for better ones, one OMPL solution at a time.
 class ControlSearch {
  public:
-    ControlSearch(const SteeredFlights& flights, const ControlHooks& hooks)
+    ControlSearch(const SteeredFlights& flights, const OmplHooks& hooks)
         : flights_(flights), hooks_(hooks), nearest_{flights.start()} {}
 
     void run(const ResumablePlanner& prepared, const ob::ProblemDefinitionPtr& definition) {
@@ -85,8 +85,8 @@ class ControlSearch {
         }
     }
 
-    [[nodiscard]] ControlResult result() const {
-        ControlResult result = result_;
+    [[nodiscard]] OmplResult result() const {
+        OmplResult result = result_;
         result.iterations = iterations_;
         if (!result.plan) {
             result.nearest_approach_m = distance_m(nearest_.back());
@@ -101,10 +101,12 @@ class ControlSearch {
 
  private:
     bool ask() {
-        is_over_ = is_over_ || hooks_.is_over(iterations_);
+        is_over_ = is_over_ || hooks_.is_over({iterations_, statistics().edges, statistics().rejections});
         iterations_ += is_over_ ? 0 : 1;
         return is_over_;
     }
+
+    [[nodiscard]] const FlightStatistics& statistics() const { return flights_.flights().statistics(); }
 
     /// From the place of rest to the goal region.
     [[nodiscard]] double distance_m(const FlightPoint& moment) const {
@@ -136,8 +138,8 @@ class ControlSearch {
     }
 
     const SteeredFlights& flights_;
-    const ControlHooks& hooks_;
-    ControlResult result_;
+    const OmplHooks& hooks_;
+    OmplResult result_;
     std::vector<FlightPoint> nearest_;  ///< the way to the place of rest that came nearest to the goal
     std::uint64_t iterations_ = 0;
     bool is_over_ = false;
@@ -145,7 +147,7 @@ class ControlSearch {
 
 }  // namespace
 
-ControlResult plan_by_controls(const SteeredFlights& flights, Random& random, const ControlHooks& hooks) {
+OmplResult plan_by_controls(const SteeredFlights& flights, Random& random, const OmplHooks& hooks) {
     const QuietOmpl quiet;
     const PlannerSettings& settings = flights.task().problem.planner;
     const oc::SpaceInformationPtr information = make_flight_information(flights, random);
@@ -162,7 +164,7 @@ ControlResult plan_by_controls(const SteeredFlights& flights, Random& random, co
     prepared.planner->setup();
     ControlSearch search(flights, hooks);
     search.run(prepared, definition);
-    ControlResult result = search.result();
+    OmplResult result = search.result();
     if (hooks.keep_tree) {
         result.tree = tree_of(*prepared.planner, [](const ob::State* state) { return point_of(state).rest; });
     }

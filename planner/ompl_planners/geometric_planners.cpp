@@ -32,6 +32,7 @@ namespace og = ompl::geometric;
 struct PreparedPlanner {
     ob::PlannerPtr planner;
     std::function<std::size_t()> nodes;
+    bool is_anytime = true;
 };
 
 template <class Planner>
@@ -43,11 +44,13 @@ PreparedPlanner prepared(const ob::SpaceInformationPtr& information, const ob::P
 
 PreparedPlanner prepared_planner(const PlannerSettings& settings, const ob::SpaceInformationPtr& information,
                                  const ob::ProblemDefinitionPtr& definition) {
-    if (settings.algorithm == "rrt-star") {
+    if (settings.algorithm == "ompl-rrt-star") {
         return prepared<og::RRTstar>(information, definition, settings.seed);
     }
     if (settings.algorithm == "rrt-connect") {
-        return prepared<og::RRTConnect>(information, definition, settings.seed);
+        PreparedPlanner connect = prepared<og::RRTConnect>(information, definition, settings.seed);
+        connect.is_anytime = false;
+        return connect;
     }
     if (settings.algorithm == "informed-rrt-star") {
         return prepared<og::InformedRRTstar>(information, definition, settings.seed);
@@ -121,7 +124,7 @@ class GeometricObjective : public ob::OptimizationObjective {
     const SearchSpace& space_;
 };
 
-std::vector<Configuration> unwrapped(const og::PathGeometric& path, const SearchSpace& space,
+std::vector<Configuration> unwrapped(og::PathGeometric& path, const SearchSpace& space,
                                      const Configuration& start) {
     std::vector<Configuration> waypoints;
     Configuration last = start;
@@ -140,6 +143,98 @@ double cost_of(const std::vector<Configuration>& waypoints, const FreeAirCost& c
     return sum + cost.of_hold(waypoints.back(), space.hold_s(waypoints.back()));
 }
 
+/// The search for a path and then for better ones, one OMPL solution at a time.
+class LineSearch {
+ public:
+    LineSearch(const SearchTask& task, const FreeAirCost& cost, const OmplHooks& hooks, const QueryCounts& counts)
+        : task_(task), space_(task.space), free_air_cost_(cost), hooks_(hooks), counts_(counts) {
+        result_.nearest_approach_m = space_.goal_distance_m(task.problem.start.at);
+    }
+
+    void run(const PreparedPlanner& prepared, const ob::ProblemDefinitionPtr& definition) {
+        nodes_ = prepared.nodes;
+        definition->setIntermediateSolutionCallback(
+            [this](const ob::Planner*, const std::vector<const ob::State*>&, const ob::Cost cost) {
+                better_cost_ = cost.value();
+            });
+        while (!is_over_ && (prepared.is_anytime || !has_plan())) {
+            const std::uint64_t before = result_.iterations;
+            prepared.planner->solve(
+                ob::PlannerTerminationCondition([this] { return better_cost_.has_value() || ask(); }));
+            const bool is_better = better_cost_.has_value() || !prepared.is_anytime || is_over_;
+            if (is_better && definition->getSolutionPath() != nullptr) {
+                review(*definition);
+            }
+            better_cost_.reset();
+            definition->clearSolutionPaths();
+            if (!prepared.is_anytime && !has_plan()) {
+                prepared.planner->clear();
+            }
+            if (result_.iterations == before && !is_better) {
+                break;  // the planner will not go on
+            }
+        }
+    }
+
+    [[nodiscard]] OmplResult result() const {
+        OmplResult result = result_;
+        if (has_plan()) {
+            result.nearest_approach_m.reset();
+        }
+        return result;
+    }
+
+ private:
+    [[nodiscard]] bool has_plan() const noexcept { return result_.status == Status::solved; }
+
+    bool ask() {
+        is_over_ = is_over_ || hooks_.is_over({result_.iterations, nodes_(), counts_.rejected()});
+        result_.iterations += is_over_ ? 0 : 1;
+        return is_over_;
+    }
+
+    /// Offers an exact path; of others, and of those that do not count, the one that leads nearest to the goal is kept.
+    void review(const ob::ProblemDefinition& definition) {
+        auto& path = *definition.getSolutionPath()->as<og::PathGeometric>();
+        const std::vector<Configuration> waypoints = unwrapped(path, space_, task_.problem.start.at);
+        // The planner's status counts an approximate solution as one.
+        const bool is_exact =
+            definition.hasExactSolution() && definition.getGoal()->isSatisfied(path.getStates().back());
+        const double cost =
+            is_exact && better_cost_ ? *better_cost_ : cost_of(waypoints, free_air_cost_, space_);
+        if (has_plan() && (!is_exact || cost >= result_.cost)) {
+            return;
+        }
+        Plan plan = timed_plan(waypoints, reference_at(task_.problem.start), task_.problem.motion,
+                               task_.model.tick().tick_s);
+        const bool is_too_long = plan.reference.back().tick > max_plan_ticks;
+        if (is_exact && !is_too_long && hooks_.accept(plan, cost, result_.iterations)) {
+            result_.status = Status::solved;
+            result_.plan = std::move(plan);
+            result_.cost = cost;
+            return;
+        }
+        const double off_m = space_.goal_distance_m(waypoints.back());
+        if (!has_plan() && !is_too_long && waypoints.size() > 1 &&
+            (result_.status == Status::none || off_m < result_.nearest_approach_m)) {
+            result_.status = Status::approximate;
+            result_.plan = std::move(plan);
+            result_.cost = cost;
+            result_.nearest_approach_m = std::min(*result_.nearest_approach_m, off_m);
+        }
+    }
+
+    const SearchTask& task_;
+    const SearchSpace& space_;
+    const FreeAirCost& free_air_cost_;
+    const OmplHooks& hooks_;
+    const QueryCounts& counts_;
+    std::function<std::size_t()> nodes_;
+    std::optional<double> better_cost_;  ///< the planner has just found a path of this cost
+    OmplResult result_;
+    bool is_over_ = false;
+};
+
 }  // namespace
 
 Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoint& start, const MotionLimits& limits,
@@ -155,7 +250,7 @@ Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoin
     return plan;
 }
 
-GeometricResult plan_geometrically(const SearchTask& task, Random& random, const GeometricHooks& hooks) {
+GeometricResult plan_geometrically(const SearchTask& task, Random& random, const OmplHooks& hooks) {
     const Problem& problem = task.problem;
     const SearchSpace& space = task.space;
     const QuietOmpl quiet;
@@ -180,41 +275,11 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
     const PreparedPlanner prepared = prepared_planner(problem.planner, information, definition);
     set_parameters(*prepared.planner, problem.planner);
     prepared.planner->setup();
-    GeometricResult result;
-    std::optional<double> best_cost;
-    const auto improve = [&](double cost) {
-        best_cost = cost;
-        hooks.on_improvement(cost, result.iterations);
-    };
-    definition->setIntermediateSolutionCallback(
-        [&](const ob::Planner*, const std::vector<const ob::State*>&, const ob::Cost cost) { improve(cost.value()); });
-    prepared.planner->solve(ob::PlannerTerminationCondition([&] {
-        const bool is_over = hooks.is_over({result.iterations, prepared.nodes(), counts.rejected()});
-        result.iterations += is_over ? 0 : 1;
-        return is_over;
-    }));
-
+    LineSearch search(task, free_air_cost, hooks, counts);
+    search.run(prepared, definition);
+    GeometricResult result{search.result(), counts};
     if (hooks.keep_tree) {
         result.tree = tree_of(*prepared.planner, [&space](const ob::State* state) { return read(state, space); });
-    }
-    result.counts = counts;
-    result.nearest_approach_m = space.goal_distance_m(start);
-    if (definition->getSolutionPath() != nullptr) {
-        auto* path = definition->getSolutionPath()->as<og::PathGeometric>();
-        const std::vector<Configuration> waypoints = unwrapped(*path, space, start);
-        const double off_m = space.goal_distance_m(waypoints.back());
-        // The planner's status counts an approximate solution as one.
-        const bool is_exact =
-            definition->hasExactSolution() && definition->getGoal()->isSatisfied(path->getStates().back());
-        if (is_exact || waypoints.size() > 1) {
-            result.status = is_exact ? Status::solved : Status::approximate;
-            result.nearest_approach_m = std::min(result.nearest_approach_m, off_m);
-            result.plan = timed_plan(waypoints, reference_at(problem.start), problem.motion, task.model.tick().tick_s);
-            if (is_exact && !best_cost) {
-                improve(cost_of(waypoints, free_air_cost, space));
-            }
-            result.cost = is_exact ? *best_cost : cost_of(waypoints, free_air_cost, space);
-        }
     }
     return result;
 }

@@ -9,6 +9,13 @@ namespace {
 /// A flight may close from so far away [m], the arm's turn counted as way.
 constexpr double closing_range_m = 0.5;
 
+/// The vehicle at a moment, in every world.
+Fleet fleet_of(const FlightPoint& point) {
+    Fleet fleet{point.vehicle};
+    fleet.insert(fleet.end(), point.others.begin(), point.others.end());
+    return fleet;
+}
+
 bool stands_still(const ReferencePoint& point) {
     return std::ranges::all_of(point.velocity, [](double rate) { return rate == 0; });
 }
@@ -22,6 +29,9 @@ SteeredFlights::SteeredFlights(PlannedFlights& flights)
 
 FlightPoint SteeredFlights::start() const {
     FlightPoint point = start_point(task_);
+    if (task_.worlds != nullptr) {
+        point.others = task_.worlds->start;
+    }
     point.rest = steps_.rest_of(point.reference);
     return point;
 }
@@ -47,14 +57,21 @@ FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double veloci
         return next;
     }
     const ReferenceSegment segment(from.reference, next.reference, steps_.ticks(), task_.model.tick().tick_s);
-    FlightJob job{from.vehicle, {{segment}}};
+    FleetJob job = flights_.job(fleet_of(from), from.ticks, {{segment}});
     flights_.fly(std::span(&job, 1));
-    next.vehicle = job.end();
-    next.is_valid = job.rejection() == Rejection::none;
-    if (next.is_valid) {
-        next.cost = flights_.cost_after(from.cost, from.vehicle, job.legs.front());
-    }
+    arrive(next, from, job);
     return next;
+}
+
+/// Where a flight along one segment has led.
+void SteeredFlights::arrive(FlightPoint& next, const FlightPoint& from, const FleetJob& job) const {
+    next.vehicle = job.jobs.front().end();
+    next.is_valid = job.is_accepted();
+    if (next.is_valid) {
+        const Fleet fleet = job.end();
+        next.others.assign(fleet.begin() + 1, fleet.end());
+        next.cost = flights_.cost_after(from.cost, fleet_of(from), job, 0);
+    }
 }
 
 FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double velocity[max_axes]) const {
@@ -65,17 +82,14 @@ FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double 
 }
 
 FlightPoint SteeredFlights::followed(const FlightPoint& from, const ReferencePoint& to, std::int64_t ticks) const {
-    FlightRules rules = flights_.rules();
-    rules.is_over = {};
     FlightPoint next = from;
-    FlightLeg leg{ReferenceSegment(from.reference, to, ticks, task_.model.tick().tick_s)};
-    leg.flight = fly(task_.model, task_.map, rules, leg.segment, next.vehicle);
-    leg.end = next.vehicle;
+    const ReferenceSegment segment(from.reference, to, ticks, task_.model.tick().tick_s);
+    FleetJob job = flights_.job(fleet_of(from), from.ticks, {{segment}});
+    flights_.fly_again(job);
     next.reference = to;
     next.rest = configuration_of(to);
-    next.cost = flights_.cost_after(from.cost, from.vehicle, leg);
     next.ticks = from.ticks + ticks;
-    next.is_valid = leg.flight.rejection == Rejection::none;
+    arrive(next, from, job);
     return next;
 }
 
@@ -100,14 +114,16 @@ std::optional<Closing> SteeredFlights::closing(const FlightPoint& from) const {
         flights_.count_rejection("too_long");
         return std::nullopt;
     }
-    FlightJob job{from.vehicle, {{segment}, flights_.hold_leg(segment.to())}, flights_.judged_ticks()};
+    const Fleet fleet = fleet_of(from);
+    FleetJob job =
+        flights_.job(fleet, from.ticks, {{segment}, flights_.hold_leg(segment.to())}, flights_.judged_ticks());
     flights_.fly(std::span(&job, 1));
-    if (job.rejection() != Rejection::none) {
+    if (!job.is_accepted()) {
         return std::nullopt;
     }
-    const double arrived = flights_.cost_after(from.cost, from.vehicle, job.legs[0]);
-    const double cost = flights_.cost_after(arrived, job.legs[0].end, job.legs[1]);
-    return Closing{{from.ticks + segment.ticks(), segment.to()}, job.legs[0].end, job.end(), cost};
+    const double arrived = flights_.cost_after(from.cost, fleet, job, 0);
+    const double cost = flights_.cost_after(arrived, job.fleet_after(0), job, 1);
+    return Closing{{from.ticks + segment.ticks(), segment.to()}, job.legs()[0].end, job.legs()[1].end, cost};
 }
 
 Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::optional<Closing>& end) const {
@@ -130,9 +146,9 @@ Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::opt
 
 void SteeredFlights::verify(const std::vector<FlightPoint>& points, const Closing& end) const {
     std::vector<FlightPoint> moments = points;
-    moments.push_back({end.arrival, end.goal.point, {}, 0, end.goal.tick});
+    moments.push_back({end.arrival, {}, end.goal.point, {}, 0, end.goal.tick});
     const std::int64_t hold_ticks = flights_.hold_leg(end.goal.point).segment.ticks();
-    moments.push_back({end.end, end.goal.point, {}, end.cost, end.goal.tick + hold_ticks});
+    moments.push_back({end.end, {}, end.goal.point, {}, end.cost, end.goal.tick + hold_ticks});
     flights_.verify(moments);
 }
 

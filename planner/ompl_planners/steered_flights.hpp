@@ -18,7 +18,8 @@ struct Closing {
     double cost = 0;      ///< cost of the whole flight, hold included
 };
 
-/// The flights of one problem that planners over controls choose from, flown in closed loop tick by tick.
+/// The flights of one problem that planners over controls choose from, flown in closed loop tick by tick, in
+/// every world of the search.
 class SteeredFlights {
  public:
     /// @param flights must outlive it
@@ -57,6 +58,7 @@ class SteeredFlights {
     void verify(const std::vector<FlightPoint>& points, const Closing& end) const;
 
  private:
+    void arrive(FlightPoint& next, const FlightPoint& from, const FleetJob& job) const;
     /// Where a step leads but for its flight: the reference, and the place where that would rest.
     [[nodiscard]] FlightPoint steered(const FlightPoint& from, const double velocity[max_axes]) const;
 

@@ -1,5 +1,6 @@
 #include "downwash/search/flight_point.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -23,7 +24,11 @@ FlightPoint resting_at(const FlightModel& model, const Configuration& c) {
 
 bool is_same_moment(const FlightPoint& a, const FlightPoint& b) {
     static_assert(std::is_trivially_copyable_v<FlightState> && sizeof(FlightState) % sizeof(double) == 0);
-    return std::memcmp(&a.vehicle, &b.vehicle, sizeof(FlightState)) == 0 && a.reference == b.reference;
+    const auto is_same = [](const FlightState& one, const FlightState& other) {
+        return std::memcmp(&one, &other, sizeof(FlightState)) == 0;
+    };
+    return is_same(a.vehicle, b.vehicle) && std::ranges::equal(a.others, b.others, is_same) &&
+           a.reference == b.reference;
 }
 
 Plan plan_through(const std::vector<FlightPoint>& moments, double tick_s) {

@@ -12,6 +12,7 @@ namespace downwash::planning {
 /// from it is a pure function.
 struct FlightPoint {
     FlightState vehicle;       ///< bodies, rotor lag, energy and the controller's memory
+    Fleet others;              ///< the vehicle in the other worlds of a search by OMPL's planners
     ReferencePoint reference;  ///< reference that the vehicle follows
     Configuration rest;        ///< where the reference would come to rest; stands for the place of this moment
     double cost = 0;           ///< cost of the flight from the start, in the objective's unit
@@ -25,7 +26,7 @@ struct FlightPoint {
 /// The vehicle level and at rest at a configuration.
 [[nodiscard]] FlightPoint resting_at(const FlightModel& model, const Configuration& configuration);
 
-/// Whether vehicle and reference are the same to the last bit.
+/// Whether vehicle, in all worlds, and reference are the same to the last bit.
 [[nodiscard]] bool is_same_moment(const FlightPoint& a, const FlightPoint& b);
 
 /// A plan as it was simulated: the moments at its knots, then the one after the hover at the goal.

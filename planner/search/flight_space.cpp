@@ -10,6 +10,7 @@
 #include <ostream>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 #include "downwash/base/lane_math.hpp"
 
@@ -109,13 +110,25 @@ class FlightSpace : public ob::StateSpace {
     }
     ob::State* allocState() const override { return new Moment; }
     void freeState(ob::State* state) const override { delete static_cast<Moment*>(state); }
-    unsigned int getSerializationLength() const override { return sizeof(FlightPoint); }
+    unsigned int getSerializationLength() const override {
+        return static_cast<unsigned int>(sizeof(PlainMoment) + other_worlds() * sizeof(FlightState));
+    }
     void serialize(void* bytes, const ob::State* state) const override {
-        std::memcpy(bytes, &point_of(state), sizeof(FlightPoint));
+        const FlightPoint& point = point_of(state);
+        const PlainMoment plain{point.vehicle, point.reference, point.rest, point.cost, point.ticks, point.is_valid};
+        Fleet others = point.others;
+        others.resize(other_worlds(), point.vehicle);
+        std::memcpy(bytes, &plain, sizeof plain);
+        std::memcpy(static_cast<char*>(bytes) + sizeof plain, others.data(), others.size() * sizeof(FlightState));
     }
     void deserialize(ob::State* state, const void* bytes) const override {
-        static_assert(std::is_trivially_copyable_v<FlightPoint>);
-        std::memcpy(&point_of(state), bytes, sizeof(FlightPoint));
+        static_assert(std::is_trivially_copyable_v<PlainMoment> && std::is_trivially_copyable_v<FlightState>);
+        PlainMoment plain;
+        Fleet others(other_worlds());
+        std::memcpy(&plain, bytes, sizeof plain);
+        std::memcpy(others.data(), static_cast<const char*>(bytes) + sizeof plain, others.size() * sizeof(FlightState));
+        point_of(state) = {plain.vehicle, std::move(others), plain.reference, plain.rest,
+                           plain.cost,    plain.ticks,       plain.is_valid};
     }
     void printState(const ob::State* state, std::ostream& out) const override {
         const Configuration at = configuration_of(point_of(state).vehicle.plant.q);
@@ -129,7 +142,19 @@ class FlightSpace : public ob::StateSpace {
     void registerProjections() override { registerDefaultProjection(std::make_shared<PlaceOfRest>(this, space())); }
 
  private:
+    /// A moment but for the vehicle in other worlds.
+    struct PlainMoment {
+        FlightState vehicle;
+        ReferencePoint reference;
+        Configuration rest;
+        double cost;
+        std::int64_t ticks;
+        bool is_valid;
+    };
     [[nodiscard]] const SearchSpace& space() const noexcept { return task_.space; }
+    [[nodiscard]] std::size_t other_worlds() const noexcept {
+        return task_.worlds != nullptr ? task_.worlds->worlds.size() : 0;
+    }
 
     const SearchTask& task_;
     Random& random_;

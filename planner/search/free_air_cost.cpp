@@ -13,15 +13,14 @@ namespace {
 /// top speed.
 constexpr double peak_over_mean_speed = 15.0 / 8.0;
 
-/// Power of the level, hovering vehicle, arm still [W].
+}  // namespace
+
 double hover_power_w(const FlightModel& model) {
     const PlantModel& plant = model.tick().plant;
     double thrust_n[max_rotors];
     dynamics::allocate(plant, plant.total_mass_kg * standard_gravity_m_s2, 0.0, thrust_n);
     return dynamics::rotor_power(plant, thrust_n);
 }
-
-}  // namespace
 
 FreeAirCost::FreeAirCost(const SearchTask& task)
     : objective_(task.problem.planner.objective),

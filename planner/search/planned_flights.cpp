@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "downwash/search/free_air_cost.hpp"
+#include "downwash/search/line_flights.hpp"
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash::planning {
@@ -81,18 +81,17 @@ PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_
     : task_(task),
       limits_(task.problem.motion),
       tick_s_(task.model.tick().tick_s),
-      nominal_pool_(task.model, task.map, planning_rules(task.problem, true, is_over), &task.problem.goal, threads) {
+      nominal_(edge_flights(task, planning_rules(task.problem, true, is_over), threads)) {
     if (task.worlds != nullptr) {
-        world_pool_ = std::make_unique<FlightPool>(task.model, task.map, planning_rules(task.problem, false, is_over),
-                                                   &task.problem.goal, threads);
+        other_worlds_ = edge_flights(task, planning_rules(task.problem, false, is_over), threads);
     }
     forget();
 }
 
 void PlannedFlights::use_threads(int threads) {
-    nominal_pool_.use_threads(threads);
-    if (world_pool_ != nullptr) {
-        world_pool_->use_threads(threads);
+    nominal_->use_threads(threads);
+    if (other_worlds_ != nullptr) {
+        other_worlds_->use_threads(threads);
     }
 }
 
@@ -132,24 +131,10 @@ void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection
 
 bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     constexpr double spacing_m = 0.1;
-    const ReferencePoint& a = segment.from();
-    const ReferencePoint& b = segment.to();
-    const double arm_m = task_.problem.robot.arm.length_m;
-    const auto weighted = [arm_m, axes = task_.space.axes()](const double* v) {
-        double sum_m = 0;
-        for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-            sum_m += (axes[axis].group == AxisGroup::translation ? 1 : arm_m) * std::abs(v[axis]);
-        }
-        return sum_m;
-    };
-    double step[max_axes];
-    std::transform(b.position, b.position + max_axes, a.position, step, std::minus{});
-    // Ends that move may lead beyond the line between them.
-    const double motion_m = weighted(step) + (weighted(a.velocity) + weighted(b.velocity)) * segment.duration_s();
-    const auto samples = static_cast<std::int64_t>(std::ceil(motion_m / spacing_m)) + 1;
+    const std::int64_t samples = samples_along(segment, task_, spacing_m);
     const auto at = [&](std::int64_t i) { return segment.at_tick(segment.ticks() * i / samples); };
     const auto rejection_at = [&](const ReferencePoint& point) {
-        return task_.space.rejection_at(configuration_of(point), limits_.max_thrust_ratio ? pitch_along(point) : 0);
+        return task_.space.rejection_at(configuration_of(point), task_.flies() && limits_.max_thrust_ratio ? pitch_along(point) : 0);
     };
     Rejection rejection = Rejection::none;
     for (std::int64_t i = samples; i >= 1 && rejection == Rejection::none;
@@ -174,7 +159,7 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
 }
 
 void PlannedFlights::fly(std::span<FlightJob> jobs) {
-    nominal_pool_.fly(jobs);
+    statistics_.states_checked += nominal_->fly(jobs);
     for (const FlightJob& job : jobs) {
         count(job);
         if (const FlightLeg* leg = job.rejected_leg()) {
@@ -187,7 +172,6 @@ void PlannedFlights::count(const FlightJob& job) {
     for (const FlightLeg& leg : job.legs) {
         statistics_.edges += leg.flight.ticks > 0 ? 1 : 0;
         statistics_.ticks += static_cast<std::uint64_t>(leg.flight.ticks);
-        statistics_.states_checked += static_cast<std::uint64_t>(leg.flight.ticks);
     }
 }
 
@@ -253,7 +237,7 @@ void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<Fleet
     for (FlightJob* owner : owners) {
         flown.push_back(std::move(*owner));
     }
-    (worlds.front() == 0 ? nominal_pool_ : *world_pool_).fly(flown);
+    statistics_.states_checked += (worlds.front() == 0 ? *nominal_ : *other_worlds_).fly(flown);
     for (std::size_t i = 0; i < flown.size(); ++i) {
         count(flown[i]);
         rejected_in_[world_of[i]] += flown[i].rejected_leg() != nullptr ? 1 : 0;
@@ -312,14 +296,28 @@ bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights&
            meets_goal(flights.task().problem.goal, flights.task().model.tick().plant, end.vehicle);
 }
 
+void PlannedFlights::fly_again(FleetJob& fleet) const {
+    for (std::size_t i = 0; i < fleet.jobs.size(); ++i) {
+        FlightJob& job = fleet.jobs[i];
+        FlightState vehicle = job.start;
+        std::int64_t tick = job.first_tick;
+        for (FlightLeg& leg : job.legs) {
+            leg.flight = (i == 0 ? *nominal_ : *other_worlds_).fly_again(leg.segment, vehicle, {job.world, tick});
+            leg.end = vehicle;
+            tick += leg.segment.ticks();
+            if (leg.flight.rejection != Rejection::none) {
+                break;
+            }
+        }
+    }
+}
+
 void PlannedFlights::verify(std::span<const FlightPoint> moments) const {
-    FlightRules to_the_end = rules();
-    to_the_end.is_over = {};
     FlightPoint point = moments.front();
     for (std::size_t i = 1; i < moments.size(); ++i) {
         const FlightPoint& next = moments[i];
         const ReferenceSegment segment(point.reference, next.reference, next.ticks - point.ticks, tick_s_);
-        const SegmentFlight flight = downwash::fly(task_.model, task_.map, to_the_end, segment, point.vehicle);
+        const SegmentFlight flight = nominal_->fly_again(segment, point.vehicle);
         point.reference = segment.to();
         point.ticks = next.ticks;
         if (flight.rejection != Rejection::none || !is_same_moment(point, next)) {

@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
+#include "downwash/search/edge_flights.hpp"
 #include "downwash/search/flight_point.hpp"
 #include "downwash/search/search_record.hpp"
-#include "downwash/simulation/flight_batch.hpp"
 
 namespace downwash::planning {
 
@@ -68,6 +68,10 @@ class PlannedFlights {
     /// rejected most flights so far, as many as fill the lanes, then in the rest.
     void fly_in_other_worlds(std::span<FleetJob> jobs);
 
+    /// Flies a job again in all its worlds, by the plain loop over ticks: neither counted nor ended from outside. May be
+    /// called from any thread.
+    void fly_again(FleetJob& job) const;
+
     /// Flies from each moment to the next again through the planner's own model, by the plain loop over ticks. May be
     /// called from any thread.
     /// @throws std::logic_error when something is rejected, or a vehicle does not come out bit for bit
@@ -86,7 +90,7 @@ class PlannedFlights {
     [[nodiscard]] ReferenceSegment fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const;
     [[nodiscard]] const MotionLimits& limits() const noexcept { return limits_; }
 
-    [[nodiscard]] const FlightRules& rules() const noexcept { return nominal_pool_.rules(); }
+    [[nodiscard]] const FlightRules& rules() const noexcept { return nominal_->rules(); }
     [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
     [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
     /// Forgets counterexamples and begins to count anew.
@@ -108,8 +112,8 @@ class PlannedFlights {
     const SearchTask& task_;
     MotionLimits limits_;
     double tick_s_;
-    FlightPool nominal_pool_;                 ///< flies in the nominal world
-    std::unique_ptr<FlightPool> world_pool_;  ///< flies in all others, if there are any
+    std::unique_ptr<EdgeFlights> nominal_;       ///< flies in the nominal world
+    std::unique_ptr<EdgeFlights> other_worlds_;  ///< flies in all others, if there are any
     FlightStatistics statistics_;
     std::vector<Counterexample> joined_;
     std::vector<std::uint64_t> rejected_in_;  ///< flights by world, the nominal one first

@@ -24,7 +24,7 @@ struct Improvement {
     double wall_s = 0;
     std::uint64_t iteration = 0;
     double cost = 0;                   ///< by the planner's own model
-    std::optional<double> flown_cost;  ///< cost of its flight with direct aerodynamics; mp-arm-ada only
+    std::optional<double> flown_cost;  ///< cost of its flight with direct aerodynamics, if that was checked
 };
 
 /// What stood between a search and its goal: of the ways into the goal region that were rejected, holds included, the
@@ -34,6 +34,13 @@ struct Obstruction {
     std::string cause;           ///< as in SearchRecord::rejected
     Configuration at;            ///< where it was rejected
     double goal_distance_m = 0;  ///< from there to the goal region; 0 inside
+};
+
+/// What became of the candidates of a search: plans that its own model accepts, each cheaper than the best before it.
+struct Candidates {
+    std::uint64_t checked = 0;
+    std::uint64_t failed_execution = 0;    ///< discarded after their execution with direct aerodynamics
+    std::uint64_t failed_certificate = 0;  ///< discarded because they got no certificate
 };
 
 /// How a search went.
@@ -49,6 +56,7 @@ struct SearchRecord {
     std::uint64_t states_checked = 0;  ///< collision queries of single states
     std::vector<Improvement> improvements;
     std::map<std::string, std::uint64_t> rejected;  ///< by cause: collision, flyable_area, saturation, ...
+    Candidates candidates;                          ///< what became of plans before one of them was reported
 };
 
 /// A node of the tree that a search has grown.

@@ -37,6 +37,9 @@ struct SearchTask {
         return fleet;
     }
 
+    /// Whether edges are flights; those of MP-ARM are lines.
+    [[nodiscard]] bool flies() const noexcept { return plans_flights(problem.planner.variant); }
+
     const Problem& problem;
     const FlightModel& model;
     const AeroMap* map;

@@ -1,0 +1,231 @@
+#include "downwash/planner/candidate_check.hpp"
+
+#include <algorithm>
+#include <future>
+#include <system_error>
+#include <utility>
+
+#include "downwash/planner/braking.hpp"
+
+namespace downwash::planning {
+namespace {
+
+/// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
+Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
+    if (flight.outcome == Outcome::over_budget) {
+        return {std::string(name_of(flight.outcome)), configuration_of(flight.rows.back().q), 0};
+    }
+    const auto nearest =
+        std::min_element(flight.rows.begin(), flight.rows.end(),
+                         [](const FlightRow& a, const FlightRow& b) { return a.clearance_m < b.clearance_m; });
+    const bool is_too_near = flight.outcome == Outcome::ok || flight.outcome == Outcome::collision;
+    const double(&q)[4] = (is_too_near ? *nearest : flight.rows.back()).q;
+    return {"direct_flight", configuration_of(q), space.goal_distance_m(configuration_of(q))};
+}
+
+}  // namespace
+
+CandidateCheck::CandidateCheck(const Problem& part, const Problem& whole, const PlannerModel& model,
+                               const Course& before, const PlanChecks& checks, const SolveOptions& options)
+    : options_(options),
+      before_(before),
+      checks_(checks),
+      goals_(before.goals),
+      clock_(part.planner, options),
+      search_worlds_(plans_flights(part.planner.variant) && checks.worlds != nullptr ? checks.worlds->for_search(before) : SearchWorlds{}),
+      task_(part, *model.flight, model.own_map.get(), before.vehicle,
+            plans_flights(part.planner.variant) && checks.worlds != nullptr ? &search_worlds_ : nullptr,
+            before.ticks()),
+      start_(before.plan.reference.empty() ? before.vehicle : start_state(*model.flight, whole.start)) {
+    if (before.goals.size() != whole.goals_before.size()) {
+        checks_.stop_finder = nullptr;
+    }
+    goals_.push_back(part.goal);
+    result_.attempts = before.attempts;
+}
+
+bool CandidateCheck::counts(const Plan& plan, double cost) {
+    counterexamples_.clear();
+    clock_.found_first(clock_.seconds());
+    if (uncertified_ && is_over()) {
+        return false;  // too late for a certificate
+    }
+    ++clock_.record.candidates.checked;
+    if (task_.problem.planner.check_execution) {
+        if (!flies_well(plan)) {
+            ++clock_.record.candidates.failed_execution;
+            return false;
+        }
+    } else if (needs_certificate()) {
+        certify(before_.plan.followed_by(plan), [this] { return is_over(); });
+    }
+    known_at_s_ = clock_.seconds();
+    if (certifies() && !is_certified(plan, cost)) {
+        ++clock_.record.candidates.failed_certificate;
+        return false;
+    }
+    return can_stop(plan);
+}
+
+/// Flies a plan to the last goal for its certificate.
+void CandidateCheck::certify(const Plan& flown, const StopCondition& is_over) {
+    certificate_ = checks_.worlds->certify(flown, result_.attempts + 1, is_over, world_counter());
+    clock_.has_certified();
+}
+
+/// Whether a plan is good when executed with direct aerodynamics. If the plan needs a certificate, another thread
+/// begins with it meanwhile; a plan that is not good has asked for none.
+bool CandidateCheck::flies_well(const Plan& plan) {
+    const Plan flown = before_.plan.followed_by(plan);
+    bool is_finished = false;
+    std::atomic<bool> is_bad = false;
+    const auto fly = [&] {
+        try {
+            flight_ = fly_directly(task_.model, start_, flown, goals_, task_.problem.energy_budget_j,
+                                   [this] { return is_over(); });
+            is_finished = true;
+        } catch (const WorkStopped&) {  // too late
+        }
+        is_bad = !is_finished || !is_good(flight_->execution, task_.problem.planner.safety_margin_m);
+    };
+    // The certificate stays on this thread: where it is solve()'s own, it tells the caller how the search goes.
+    std::future<void> flight;
+    if (needs_certificate() && options_.threads > 1) {
+        try {
+            flight = std::async(std::launch::async, fly);
+        } catch (const std::system_error&) {  // no more threads
+        }
+    }
+    if (!flight.valid()) {
+        fly();
+    }
+    if (needs_certificate() && !is_bad) {
+        certify(flown, [&] { return is_bad || is_over(); });
+    }
+    if (flight.valid()) {
+        flight.get();
+    }
+    if (!is_finished) {
+        discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
+    } else if (is_bad) {
+        discarded_ = obstruction_of(flight_->execution, task_.space);
+    }
+    return !is_bad;
+}
+
+/// Whether a plan can be left for a hover as long as the one that counts. The first one counts in any case.
+bool CandidateCheck::can_stop(const Plan& plan) {
+    stops_.reset();
+    if (checks_.stop_finder == nullptr) {
+        return true;
+    }
+    try {
+        stops_ = checks_.stop_finder->along(before_.plan.followed_by(plan), [this] { return clock_.is_over(); });
+    } catch (const WorkStopped&) {  // too late to know, and to find another one
+        return !has_plan();
+    }
+    return !result_.found.safe_stops || !is_clearly_worse(*stops_, *result_.found.safe_stops);
+}
+
+/// Whether a plan fails rarely enough in worlds that the search has not seen. One that ends before the last goal needs
+/// no certificate; any other has been flown for one.
+bool CandidateCheck::is_certified(const Plan& plan, double cost) {
+    if (needs_certificate()) {
+        ++result_.attempts;
+    } else {
+        certificate_ = checks_.worlds->screen(
+            before_.plan.followed_by(plan), goals_.size(), [this] { return is_over(); }, world_counter());
+        clock_.has_certified();
+    }
+    known_at_s_ = clock_.seconds();
+    if (certificate_->is_given) {
+        return true;
+    }
+    if (!uncertified_ || certificate_->failure_probability.high < uncertified_->certificate.failure_probability.high) {
+        uncertified_ = {plan, cost, *certificate_};
+    }
+    discarded_ = Obstruction{"certificate", plan.last(), 0};
+    if (task_.worlds != nullptr) {
+        counterexamples_ = checks_.worlds->counterexamples(*certificate_, before_);
+    }
+    weakest_ = weakest_part(*certificate_);
+    return false;
+}
+
+std::vector<Counterexample> CandidateCheck::new_counterexamples() {
+    const std::optional<std::size_t> weakest = std::exchange(weakest_, std::nullopt);
+    if (weakest && *weakest < before_.goals.size() && !has_plan()) {
+        result_.weak_goal = weakest;
+    }
+    return std::exchange(counterexamples_, {});
+}
+
+/// The plan has counted since that was known. One that is cheaper in the planner's model only, and not when executed,
+/// is no better.
+void CandidateCheck::accept(const Plan& plan, double cost, std::uint64_t iteration) {
+    Found& best = result_.found;
+    const CostFunction& objective = task_.problem.planner.objective;
+    std::optional<double> executed_cost;
+    if (flight_) {
+        executed_cost = cost_of(flight_->execution, objective);
+        if (best.execution && *executed_cost >= cost_of(*best.execution, objective)) {
+            return;
+        }
+        best.execution = std::move(flight_->execution);
+        best.flight_wall_s = flight_->wall_s;
+        flight_.reset();
+    }
+    best.status = Status::solved;
+    best.plan = plan;
+    best.cost = cost;
+    best.certificate = certificate_;
+    best.safe_stops = stops_;
+    if (certificate_ && !clock_.record.first_certified_wall_s) {
+        clock_.record.first_certified_wall_s = known_at_s_;
+    }
+    clock_.improved(known_at_s_, cost, iteration, executed_cost);
+    if (options_.on_plan) {
+        options_.on_plan({plan, cost, executed_cost});
+    }
+}
+
+SearchResult CandidateCheck::result(std::uint64_t iterations, const FlightStatistics& statistics,
+                                    std::vector<TreeNode> tree, const Approach& nearest) {
+    SearchRecord& record = clock_.record;
+    record.wall_s = clock_.seconds();
+    record.iterations = iterations;
+    if (task_.flies()) {
+        record.edges_simulated = statistics.edges;
+        record.simulated_s = static_cast<double>(statistics.ticks) * task_.model.tick().tick_s;
+    }
+    record.states_checked = statistics.states_checked;
+    record.rejected = statistics.rejected;
+    result_.record = std::move(record);
+    result_.found.tree = std::move(tree);
+    if (!has_plan()) {
+        report_failure(statistics, nearest);
+    }
+    if (result_.found.certificate) {
+        result_.found.certificate->attempts = result_.attempts;
+    }
+    return std::move(result_);
+}
+
+/// Reports what a search without a plan that counts came to, and what stood before the goal. If it had a plan, that is
+/// what became of its execution.
+void CandidateCheck::report_failure(const FlightStatistics& statistics, const Approach& nearest) {
+    Found& found = result_.found;
+    found.obstruction = discarded_ ? discarded_ : statistics.obstruction;
+    found.nearest_approach_m = nearest.nearest_m;
+    found.status = nearest.status;
+    found.plan = nearest.plan;
+    found.cost = nearest.cost;
+    if (uncertified_) {
+        found.status = Status::approximate;
+        found.plan = uncertified_->plan;
+        found.cost = uncertified_->cost;
+        found.certificate = uncertified_->certificate;
+    }
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "downwash/search/search_task.hpp"
+#include "downwash/simulation/flight_job.hpp"
+
+namespace downwash::planning {
+
+/// How the edges of a search are flown. This is all in which the levels of awareness differ: an edge of MP-ARM is a
+/// line, one of MP-ARM-DA a flight in free air, one of MP-ARM-ADA a flight through the aero map.
+class EdgeFlights {
+ public:
+    EdgeFlights() = default;
+    virtual ~EdgeFlights() = default;
+    EdgeFlights(const EdgeFlights&) = delete;
+    EdgeFlights& operator=(const EdgeFlights&) = delete;
+
+    /// Flies jobs, each to its end or to where something rejects it.
+    /// @return how many states were checked for collision
+    virtual std::uint64_t fly(std::span<FlightJob> jobs) = 0;
+
+    /// Flies one segment from a vehicle, which is replaced by that at the end; never ended from outside. The same
+    /// vehicle comes out as of a job, to the last bit. May be called from any thread.
+    [[nodiscard]] virtual SegmentFlight fly_again(const ReferenceSegment& segment, FlightState& vehicle,
+                                                  const FlightWorld& in = {}) const = 0;
+
+    /// Sets how many threads the next batches use. May be called from any thread.
+    virtual void use_threads(int threads) = 0;
+
+    /// The rules that the flights keep.
+    [[nodiscard]] virtual const FlightRules& rules() const noexcept = 0;
+};
+
+/// Edges as the level of a task's problem has them.
+/// @param task must outlive them   @param threads at least 1; nothing but the time depends on it
+[[nodiscard]] std::unique_ptr<EdgeFlights> edge_flights(const SearchTask& task, FlightRules rules, int threads);
+
+}  // namespace downwash::planning
