@@ -2,8 +2,16 @@
 # Are the pages of bench/results that README.md and docs/ quote older than the sources that they measure? Says so for each
 # page, and fails where bench/results/README.md does not list it under "Older than the sources", or lists one that is not.
 # bench/results/sources.txt says what each page measures. Exits with 77 where the history of the sources is not at hand.
-# Usage: bench/stale.sh [root of the tree]
+# Usage: bench/stale.sh [--list] [root of the tree]
+#   --list: instead, a line for each page of bench/results that is older than what it measures, quoted or not: the page, its commit, the newest
+#   commit of its sources, and which sources have changed since, with the number of files. Exits with 0 if there is none, with 1 if there are
+#   some, and with 2 if sources.txt is wrong.
 set -euo pipefail
+is_list=0
+if [[ ${1:-} == --list ]]; then
+    is_list=1
+    shift
+fi
 cd -P "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 results=bench/results
 sources=$results/sources.txt
@@ -46,10 +54,12 @@ is_same() {
 }
 
 # is_current COMMIT GROUP: whether the sources have not changed since, but for changes that sources.txt calls the same.
+# Leaves in `same_until` the last commit up to which they are the same.
 is_current() {
     local commit=$1 ranges range from to moved=1
     mapfile -t ranges < <(awk -v group="$2" '$1 == "same" && $2 == group { print $3 }' "$sources")
     while [[ $moved == 1 ]]; do
+        same_until=$commit
         if is_same "$commit" HEAD "$2"; then
             return 0
         fi
@@ -65,6 +75,25 @@ is_current() {
         done
     done
     return 1
+}
+
+# changed COMMIT GROUP: which sources of a group have changed since, as "aeromap (2), planner (5)": with the number of files.
+changed() {
+    local folders
+    mapfile -t folders < <(words group "$2")
+    LC_ALL=C comm -3 <(contents "$1" "$2") <(contents HEAD "$2") |
+        awk -v wanted="${folders[*]}" '
+            BEGIN { n = split(wanted, folder, " ") }
+            seen[$1]++ { next } # a changed file is on both sides
+            { for (i = 1; i <= n; ++i) if (index($1 "/", folder[i] "/") == 1) { files[i]++; next } }
+            END { for (i = 1; i <= n; ++i) if (files[i]) { printf "%s%s (%d)", comma, folder[i], files[i]; comma = ", " } }'
+}
+
+# newest GROUP: the newest commit that changed its sources.
+newest() {
+    local folders
+    mapfile -t folders < <(words group "$1")
+    git log -1 --format=%h --abbrev=12 HEAD -- "${folders[@]}" ':(exclude)*.md'
 }
 
 failed=0
@@ -87,17 +116,26 @@ while read -r group; do
     echo "$sources: no line describes the group $group"
     failed=1
 done < <(awk '$1 == "page" || $1 == "same" { print $2 }' "$sources" | LC_ALL=C sort -u)
-[[ $failed == 0 ]] || exit 1
+[[ $failed == 0 ]] || exit $((1 + is_list))
 
 listed=$(awk '/^## / { inside = $0 == "## Older than the sources" } inside' "$results/README.md" |
     { grep -oE '\]\([a-z_]+\.md\)' || true; } | tr -d ']()')
-mapfile -t pages < <(git grep -ohE "$results/[a-z_]+\.md" -- README.md docs | sed "s|^$results/||" | LC_ALL=C sort -u)
+if [[ $is_list == 1 ]]; then # bars.md counts what the others say
+    mapfile -t pages < <(cd "$results" && find . -name '*.md' ! -name bars.md | sed 's|^\./||' | LC_ALL=C sort)
+else
+    mapfile -t pages < <(git grep -ohE "$results/[a-z_]+\.md" -- README.md docs | sed "s|^$results/||" | LC_ALL=C sort -u)
+fi
+older=0
 for page in "${pages[@]}"; do
     [[ $page != README.md ]] || continue
     group=$(awk -v page="$page" '$1 == "page" { for (i = 3; i <= NF; ++i) if ($i == page) print $2 }' "$sources")
     if [[ -z $group ]]; then
-        echo "$results/$page is quoted, but $sources does not say what it measures"
-        failed=1
+        if [[ $is_list == 1 ]]; then
+            echo "$sources does not say what $results/$page measures"
+        else
+            echo "$results/$page is quoted, but $sources does not say what it measures"
+        fi
+        failed=$((1 + is_list))
         continue
     fi
     commit=$({ grep -oiE 'commit `?[0-9a-f]{7,40}(-dirty)?' "$results/$page" || true; } | head -n 1 | sed 's/.*[ `]//')
@@ -111,6 +149,18 @@ for page in "${pages[@]}"; do
     elif ! is_current "$commit" "$group"; then
         reason="what it measures (group $group of sources.txt) has changed since commit $commit"
     fi
+    if [[ $is_list == 1 ]]; then
+        [[ -n $reason ]] || continue
+        older=$((older + 1))
+        what=$reason
+        if git cat-file -e "${commit%-dirty}^{commit}" 2>/dev/null; then
+            [[ $commit != *-dirty ]] || is_current "${commit%-dirty}" "$group" || true
+            what=$(changed "$same_until" "$group")
+            [[ $commit != *-dirty ]] || what="${what:+$what; }$reason"
+        fi
+        printf '%-34s  %-18s  %-12s  %s\n' "$results/$page" "${commit:--}" "$(newest "$group")" "$what"
+        continue
+    fi
     is_listed=$(grep -cxF "$page" <<<"$listed" || true)
     if [[ -n $reason && $is_listed == 0 ]]; then
         echo "$results/$page is stale: $reason. Make it anew, or list it in $results/README.md"
@@ -122,4 +172,7 @@ for page in "${pages[@]}"; do
         echo "$results/$page is listed as older than its sources: $reason"
     fi
 done
+if [[ $is_list == 1 && $failed == 0 ]]; then
+    exit $((older > 0))
+fi
 exit "$failed"
