@@ -32,7 +32,8 @@ CandidateCheck::CandidateCheck(const Problem& part, const Problem& whole, const 
       checks_(checks),
       goals_(before.goals),
       clock_(part.planner, options),
-      search_worlds_(plans_flights(part.planner.variant) && checks.worlds != nullptr ? checks.worlds->for_search(before) : SearchWorlds{}),
+      search_worlds_(plans_flights(part.planner.variant) && checks.worlds != nullptr ? checks.worlds->for_search(before)
+                                                                                     : SearchWorlds{}),
       task_(part, *model.flight, model.own_map.get(), before.vehicle,
             plans_flights(part.planner.variant) && checks.worlds != nullptr ? &search_worlds_ : nullptr,
             before.ticks()),

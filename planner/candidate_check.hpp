@@ -64,9 +64,7 @@ class CandidateCheck {
  private:
     [[nodiscard]] bool has_plan() const { return result_.found.status == Status::solved; }
     [[nodiscard]] bool flies_well(const Plan& plan);
-    [[nodiscard]] bool needs_certificate() const {
-        return certifies() && goals_.size() == checks_.worlds->goals();
-    }
+    [[nodiscard]] bool needs_certificate() const { return certifies() && goals_.size() == checks_.worlds->goals(); }
     [[nodiscard]] bool certifies() const { return checks_.worlds != nullptr && task_.problem.planner.certify; }
     [[nodiscard]] WorldCounter world_counter() {
         return [this](std::uint64_t worlds, std::uint64_t failures) { clock_.certifies(worlds, failures); };

@@ -19,14 +19,16 @@ Course Course::from_start(const Problem& problem, const FlightModel& model) {
 
 Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const PlannerModel& model,
                 Variant variant) {
-    std::size_t flown = course.plan.reference.empty() ? 1 : course.plan.reference.size();
+    const std::size_t flown = course.plan.reference.empty() ? 1 : course.plan.reference.size();
     const std::int64_t begun = course.ticks();
     course.plan = with_hover(course.plan.followed_by(part), goal, *model.flight);
+    course.goals.push_back(goal);
+    course.cost += cost;
     if (!plans_flights(variant)) {
-        const double energy_j = course.vehicle.plant.energy_j +
-                                hover_power_w(*model.flight) * static_cast<double>(course.ticks() - begun) * course.plan.tick_s;
-        course.vehicle = following(*model.flight, course.plan.reference.back().point, energy_j);
-        flown = course.plan.reference.size();
+        const double part_s = static_cast<double>(course.ticks() - begun) * course.plan.tick_s;
+        course.vehicle = following(*model.flight, course.plan.reference.back().point,
+                                   course.vehicle.plant.energy_j + hover_power_w(*model.flight) * part_s);
+        return course;
     }
     for (std::size_t knot = flown; knot < course.plan.reference.size(); ++knot) {
         const SegmentFlight flight =
@@ -35,8 +37,6 @@ Course advanced(Course course, const Goal& goal, const Plan& part, double cost, 
             throw std::logic_error("a part of a plan does not fly as it was planned");
         }
     }
-    course.goals.push_back(goal);
-    course.cost += cost;
     return course;
 }
 

@@ -329,8 +329,8 @@ void Planner::search(Call& call, const Plan& left) {
     options.known_places = places_;
     Solution found = downwash::solve(PlannableProblem{next, model_}, options);
     // The plan that is found may have a certificate, and what is kept has flown in the worlds of a search only.
-    const bool is_better = found.status == Status::solved && (call.best.advice != Advice::keep || certifies() ||
-                                                              found.execution_cost < call.best.cost);
+    const bool is_better = found.status == Status::solved &&
+                           (call.best.advice != Advice::keep || certifies() || found.execution_cost < call.best.cost);
     remember(found);
     if (is_better) {
         Answer answer{Advice::follow, *found.plan, found.execution_cost, 0, {}};

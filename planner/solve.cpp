@@ -14,8 +14,8 @@ namespace downwash {
 
 namespace {
 
-/// The map of surface effects, through which MP-ARM-ADA plans and the certificates and stops of every variant are flown;
-/// nullptr where none is needed.
+/// The map of surface effects, through which MP-ARM-ADA plans and the certificates and stops of every variant are
+/// flown; nullptr where none is needed.
 /// @throws WorkStopped when a stop is requested before it is built
 std::shared_ptr<const AeroMap> map_for(const Problem& problem, const FlightModel& model, const SolveOptions& options) {
     if (!needs_map(problem, options.finds_stops)) {

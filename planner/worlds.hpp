@@ -67,7 +67,7 @@ class DOWNWASH_EXPORT ProblemWorlds {
                       const StopCondition& is_over);
 
     const Problem& problem_;
-    WorldFlights flights_;                    ///< with surfaces
+    WorldFlights flights_;                       ///< with surfaces
     std::unique_ptr<WorldFlights> in_free_air_;  ///< in the planner's own model, where it knows of none
     int threads_;
     std::uint64_t screenings_ = 0;  ///< so far

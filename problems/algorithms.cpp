@@ -65,10 +65,11 @@ constexpr std::array own_rrt_star{
 };
 
 constexpr std::array table{
-    AlgorithmInfo{"rrt-star", "geometric (mp-arm), kinodynamic (mp-arm-da, mp-arm-ada); anytime",
-                  "RRT* with refinement, the same for all variants: edges are lines for mp-arm, closed-loop flights for "
-                  "mp-arm-da and mp-arm-ada",
-                  true, true, own_rrt_star, own_rrt_star},
+    AlgorithmInfo{
+        "rrt-star", "geometric (mp-arm), kinodynamic (mp-arm-da, mp-arm-ada); anytime",
+        "RRT* with refinement, the same for all variants: edges are lines for mp-arm, closed-loop flights for "
+        "mp-arm-da and mp-arm-ada",
+        true, true, own_rrt_star, own_rrt_star},
     AlgorithmInfo{"ompl-rrt-star", "geometric (mp-arm); anytime", "OMPL's RRT*: straight edges", true, false,
                   line_rrt_star},
     AlgorithmInfo{"rrt-connect", "geometric (mp-arm); ends with the first plan",

@@ -98,7 +98,7 @@ struct PlannerSettings {
     bool certify = true;                    ///< Whether only a plan with a certificate counts.
     /// Whether a plan counts only once it was executed well with direct aerodynamics.
     bool check_execution = true;
-    ParameterValues parameters;             ///< Parameters of the algorithm that differ from their defaults.
+    ParameterValues parameters;  ///< Parameters of the algorithm that differ from their defaults.
 };
 
 /// A motion planning problem for an aerial manipulator, complete in itself.

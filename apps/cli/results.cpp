@@ -250,8 +250,9 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     text += table_row("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
     text += table_row("rejected", rejections(record));
     if (const Candidates& plans = record.candidates; plans.failed_execution + plans.failed_certificate > 0) {
-        text += table_row("candidates", fmt::format("{} plans were checked: {} failed when executed, {} got no certificate",
-                                                    plans.checked, plans.failed_execution, plans.failed_certificate));
+        text +=
+            table_row("candidates", fmt::format("{} plans were checked: {} failed when executed, {} got no certificate",
+                                                plans.checked, plans.failed_execution, plans.failed_certificate));
     }
     if (record.first_certified_wall_s) {
         text += table_row("first certified", fmt::format("after {:.3f} s", *record.first_certified_wall_s));

@@ -124,8 +124,7 @@ class GeometricObjective : public ob::OptimizationObjective {
     const SearchSpace& space_;
 };
 
-std::vector<Configuration> unwrapped(og::PathGeometric& path, const SearchSpace& space,
-                                     const Configuration& start) {
+std::vector<Configuration> unwrapped(og::PathGeometric& path, const SearchSpace& space, const Configuration& start) {
     std::vector<Configuration> waypoints;
     Configuration last = start;
     for (std::size_t i = 0; i < path.getStateCount(); ++i) {
@@ -153,10 +152,8 @@ class LineSearch {
 
     void run(const PreparedPlanner& prepared, const ob::ProblemDefinitionPtr& definition) {
         nodes_ = prepared.nodes;
-        definition->setIntermediateSolutionCallback(
-            [this](const ob::Planner*, const std::vector<const ob::State*>&, const ob::Cost cost) {
-                better_cost_ = cost.value();
-            });
+        definition->setIntermediateSolutionCallback([this](const ob::Planner*, const std::vector<const ob::State*>&,
+                                                           const ob::Cost cost) { better_cost_ = cost.value(); });
         while (!is_over_ && (prepared.is_anytime || !has_plan())) {
             const std::uint64_t before = result_.iterations;
             prepared.planner->solve(
@@ -200,13 +197,12 @@ class LineSearch {
         // The planner's status counts an approximate solution as one.
         const bool is_exact =
             definition.hasExactSolution() && definition.getGoal()->isSatisfied(path.getStates().back());
-        const double cost =
-            is_exact && better_cost_ ? *better_cost_ : cost_of(waypoints, free_air_cost_, space_);
+        const double cost = is_exact && better_cost_ ? *better_cost_ : cost_of(waypoints, free_air_cost_, space_);
         if (has_plan() && (!is_exact || cost >= result_.cost)) {
             return;
         }
-        Plan plan = timed_plan(waypoints, reference_at(task_.problem.start), task_.problem.motion,
-                               task_.model.tick().tick_s);
+        Plan plan =
+            timed_plan(waypoints, reference_at(task_.problem.start), task_.problem.motion, task_.model.tick().tick_s);
         const bool is_too_long = plan.reference.back().tick > max_plan_ticks;
         if (is_exact && !is_too_long && hooks_.accept(plan, cost, result_.iterations)) {
             result_.status = Status::solved;

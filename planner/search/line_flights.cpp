@@ -98,8 +98,7 @@ std::uint64_t LineFlights::fly(std::span<FlightJob> jobs) {
     return checked;
 }
 
-SegmentFlight LineFlights::fly_again(const ReferenceSegment& segment, FlightState& vehicle,
-                                     const FlightWorld&) const {
+SegmentFlight LineFlights::fly_again(const ReferenceSegment& segment, FlightState& vehicle, const FlightWorld&) const {
     std::uint64_t checked = 0;
     return flown(segment, vehicle, checked);
 }

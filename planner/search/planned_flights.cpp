@@ -134,7 +134,8 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     const std::int64_t samples = samples_along(segment, task_, spacing_m);
     const auto at = [&](std::int64_t i) { return segment.at_tick(segment.ticks() * i / samples); };
     const auto rejection_at = [&](const ReferencePoint& point) {
-        return task_.space.rejection_at(configuration_of(point), task_.flies() && limits_.max_thrust_ratio ? pitch_along(point) : 0);
+        return task_.space.rejection_at(configuration_of(point),
+                                        task_.flies() && limits_.max_thrust_ratio ? pitch_along(point) : 0);
     };
     Rejection rejection = Rejection::none;
     for (std::int64_t i = samples; i >= 1 && rejection == Rejection::none;

@@ -68,8 +68,8 @@ class PlannedFlights {
     /// rejected most flights so far, as many as fill the lanes, then in the rest.
     void fly_in_other_worlds(std::span<FleetJob> jobs);
 
-    /// Flies a job again in all its worlds, by the plain loop over ticks: neither counted nor ended from outside. May be
-    /// called from any thread.
+    /// Flies a job again in all its worlds, by the plain loop over ticks: neither counted nor ended from outside. May
+    /// be called from any thread.
     void fly_again(FleetJob& job) const;
 
     /// Flies from each moment to the next again through the planner's own model, by the plain loop over ticks. May be

@@ -4,7 +4,7 @@
 
 #include "../support/test_problem.hpp"
 #include "downwash/planner/braking.hpp"
-#include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/goal_search.hpp"
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_model.hpp"
@@ -35,8 +35,8 @@ struct StricterStops {
 
 Found searched(const Problem& problem, planning::StopFinder* stop_finder, const SolveOptions& options) {
     const auto model = make_flight_model(problem);
-    return planning::search_flights(problem, problem, {model, model->make_map(problem.bounds)},
-                                    planning::Course::from_start(problem, *model), {nullptr, stop_finder}, options)
+    return planning::search_goal(problem, problem, {problem.planner.variant, model, model->make_map(problem.bounds)},
+                                 planning::Course::from_start(problem, *model), {nullptr, stop_finder}, options)
         .found;
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("of two ways through several goals the one that can be left for more o
     problem.goals_before[0].hold_s = 1;
     problem.planner.max_iterations = 400;
     const auto flight_model = make_flight_model(problem);
-    const planning::PlannerModel model{flight_model, flight_model->make_map(problem.bounds)};
+    const planning::PlannerModel model{problem.planner.variant, flight_model, flight_model->make_map(problem.bounds)};
     const bool is_first_better = GENERATE(true, false);
     CAPTURE(is_first_better);
     double first_cost = 0;
@@ -104,7 +104,7 @@ TEST_CASE("of two ways through several goals the one that can be left for more o
     planning::GoalSequence sequence(problem, model, options, 0, 0);
     while (const auto part = sequence.next()) {
         planning::SearchResult result =
-            planning::search_flights(part->problem, problem, model, *part->before, {}, part->options);
+            planning::search_goal(part->problem, problem, model, *part->before, {}, part->options);
         Found& found = result.found;
         if (part->before->goals.size() == 1 && found.status == Status::solved) {
             found.safe_stops.emplace();

@@ -11,7 +11,7 @@
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/certificate.hpp"
-#include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/goal_search.hpp"
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/remedies.hpp"
 #include "downwash/planner/solve.hpp"
@@ -223,15 +223,15 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
     SolveOptions options;
     options.stop_at_first_solution = true;
     const std::shared_ptr<const FlightModel> flight_model = make_flight_model(problem);
-    const planning::PlannerModel model{flight_model, flight_model->make_map(problem.bounds)};
-    planning::ProblemWorlds worlds(problem, model.flight, model.map, options);
+    const planning::PlannerModel model{problem.planner.variant, flight_model, flight_model->make_map(problem.bounds)};
+    planning::ProblemWorlds worlds(problem, model, options);
     std::vector<std::optional<std::size_t>> named;
     planning::GoalSequence sequence(problem, model, options, 0, 0);
     while (const auto part = sequence.next()) {
         // The way to the first goal is good in the nominal world, and it stays so.
         planning::ProblemWorlds* survived = part->before->goals.empty() ? nullptr : &worlds;
         planning::SearchResult result =
-            planning::search_flights(part->problem, problem, model, *part->before, {survived}, part->options);
+            planning::search_goal(part->problem, problem, model, *part->before, {survived}, part->options);
         if (survived != nullptr) {
             named.push_back(result.weak_goal);
         }

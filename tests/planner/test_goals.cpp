@@ -71,7 +71,7 @@ struct ScriptedTour {
         Problem problem = tour(Variant::mp_arm);
         problem.aero.enabled = false;
         problem.planner.max_iterations = 1200;
-        const planning::PlannerModel model{make_flight_model(problem), nullptr};
+        const planning::PlannerModel model{problem.planner.variant, make_flight_model(problem), nullptr};
         SolveOptions options;
         options.stop_at_first_solution = true;
         planning::GoalSequence sequence(problem, model, options, 0, 0);

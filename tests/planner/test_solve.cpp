@@ -9,7 +9,7 @@
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/direct_flight.hpp"
-#include "downwash/planner/flight_search.hpp"
+#include "downwash/planner/goal_search.hpp"
 #include "downwash/planner/solve.hpp"
 
 using namespace downwash;
@@ -48,8 +48,9 @@ std::shared_ptr<const AeroMap> map_as_if(const Problem& problem, std::vector<Obs
 /// directly.
 planning::SearchResult solve_deceived(const Problem& problem, std::vector<Obstacle> obstacles) {
     const auto model = make_flight_model(problem);
-    return planning::search_flights(problem, problem, {model, map_as_if(problem, std::move(obstacles))},
-                                    planning::Course::from_start(problem, *model), {}, {});
+    return planning::search_goal(problem, problem,
+                                 {problem.planner.variant, model, map_as_if(problem, std::move(obstacles))},
+                                 planning::Course::from_start(problem, *model), {}, {});
 }
 
 }  // namespace
