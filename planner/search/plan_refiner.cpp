@@ -393,7 +393,7 @@ std::vector<FlightPoint> PlanRefiner::moments_of(const FlownPlan& flown) const {
     std::int64_t tick = 0;
     for (std::size_t i = 0; i < flown.points.size(); ++i) {
         moments.push_back(
-            {flown.fleets[i].front(), flown.points[i], configuration_of(flown.points[i]), flown.costs[i], tick});
+            {flown.fleets[i].front(), {}, flown.points[i], configuration_of(flown.points[i]), flown.costs[i], tick});
         tick += i < flown.ticks.size() ? flown.ticks[i] : 0;
     }
     FlightPoint end = moments.back();
