@@ -18,9 +18,10 @@ struct DirectFlight {
 
 /// Executes a plan with direct aerodynamics, from the start through all goals.
 /// @param energy_budget_j as for execute()   @throws WorkStopped when it is over before the flight ends
-[[nodiscard]] DirectFlight fly_directly(const FlightModel& model, const FlightState& start, const Plan& plan,
-                                        const std::vector<Goal>& goals, std::optional<double> energy_budget_j,
-                                        const StopCondition& is_over);
+[[nodiscard]] DOWNWASH_EXPORT DirectFlight fly_directly(const FlightModel& model, const FlightState& start,
+                                                        const Plan& plan, const std::vector<Goal>& goals,
+                                                        std::optional<double> energy_budget_j,
+                                                        const StopCondition& is_over);
 
 /// Whether a plan counts after its direct flight: it reaches its goals and keeps the margin.
 [[nodiscard]] DOWNWASH_EXPORT bool is_good(const Execution& flight, double safety_margin_m);

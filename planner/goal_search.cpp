@@ -64,7 +64,7 @@ SearchResult search_tree(CandidateCheck& check, const SolveOptions& options) {
     const QuietOmpl quiet;
     const PlannerSettings& settings = check.task().problem.planner;
     const double tick_s = check.task().model.tick().tick_s;
-    Random random(settings.seed);  // of OMPL's samplers, which the tree does not ask
+    Random random(settings.seed);
     const OmplTask task(check.task(), random);
     FlightTreePlanner planner(task.information, check.task(), options.threads);
     planner.setProblemDefinition(task.definition);

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "downwash/ompl_planners/flight_controls.hpp"
+#include "downwash/planner/direct_flight.hpp"
+#include "downwash/planner/worlds.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/search/flight_tree_planner.hpp"
 
@@ -21,7 +23,21 @@ PlannableProblem with_one_goal(Problem problem) {
     if (!problem.goals_before.empty()) {
         throw InputError({KeyError{"goal", "is a list of goals to visit in turn: expected one goal"}});
     }
+    if (!plans_flights(problem.planner.variant)) {
+        throw InputError(
+            {KeyError{"planner.variant", "is mp-arm, which flies nothing: expected mp-arm-da or mp-arm-ada"}});
+    }
     return plannable(std::move(problem));
+}
+
+/// The planner's own model with a map or in free air, and the true one, which has the effects of surfaces.
+planning::PlannerModel model_of(const PlannableProblem& plannable, const std::shared_ptr<const AeroMap>& map) {
+    const Problem& problem = plannable.problem;
+    const bool needs_true_map = problem.uncertainty && problem.planner.certify && problem.aero.enabled;
+    planning::PlannerModel model(problem.planner.variant, plannable.model,
+                                 map || !needs_true_map ? map : plannable.model->make_map(problem.bounds));
+    model.own_map = map;
+    return model;
 }
 
 /// Our planner among those over controls: the edges of its solutions are controls.
@@ -50,33 +66,64 @@ class ControlledFlightTree : public planning::FlightTreePlanner {
 }  // namespace
 
 struct FlightSetup::Impl {
-    Impl(Problem given, std::shared_ptr<const AeroMap> given_map)
+    Impl(Problem given, const std::shared_ptr<const AeroMap>& map)
         : plannable(with_one_goal(std::move(given))),
-          map(std::move(given_map)),
-          task(plannable.problem, *plannable.model, map.get()),
+          model(model_of(plannable, map)),
+          start(planning::Course::from_start(plannable.problem, *model.flight)),
+          worlds(plannable.problem.uncertainty
+                     ? std::make_unique<planning::ProblemWorlds>(plannable.problem, model, SolveOptions{})
+                     : nullptr),
+          search_worlds(worlds != nullptr ? worlds->for_search(start) : planning::SearchWorlds{}),
+          task(plannable.problem, *model.flight, model.own_map.get(), {}, worlds != nullptr ? &search_worlds : nullptr),
           planned(task),
           flights(planned),
           random(plannable.problem.planner.seed),
           setup(std::make_shared<oc::SimpleSetup>(planning::make_flight_information(flights, random))) {
         const auto& information = setup->getSpaceInformation();
-        ob::ScopedState<> start(information);
-        planning::point_of(start.get()) = flights.start();
-        setup->setStartState(start);
+        ob::ScopedState<> state(information);
+        planning::point_of(state.get()) = flights.start();
+        setup->setStartState(state);
         setup->setGoal(planning::make_closing_goal(information, flights, random));
         setup->setOptimizationObjective(planning::make_flight_objective(information));
     }
 
+    const Certificate& certify(const Plan& plan, const StopCondition& is_over) {
+        return certificate.emplace(worlds->certify(plan, ++attempts, is_over));
+    }
+
+    /// Whether a plan of our planner counts.
+    bool counts(const Plan& plan, const StopCondition& is_over) {
+        const Problem& problem = plannable.problem;
+        try {
+            if (problem.planner.check_execution &&
+                !planning::is_good(planning::fly_directly(*model.flight, task.start, plan, {problem.goal},
+                                                          problem.energy_budget_j, is_over)
+                                       .execution,
+                                   problem.planner.safety_margin_m)) {
+                return false;
+            }
+        } catch (const WorkStopped&) {
+            return false;
+        }
+        return worlds == nullptr || !problem.planner.certify || certify(plan, is_over).is_given;
+    }
+
     PlannableProblem plannable;
-    std::shared_ptr<const AeroMap> map;
+    planning::PlannerModel model;
+    planning::Course start;
+    std::unique_ptr<planning::ProblemWorlds> worlds;  ///< nullptr without an uncertainty
+    planning::SearchWorlds search_worlds;
     planning::SearchTask task;
     planning::PlannedFlights planned;
     planning::SteeredFlights flights;
     planning::Random random;
     oc::SimpleSetupPtr setup;
+    std::uint64_t attempts = 0;
+    std::optional<Certificate> certificate;
 };
 
 FlightSetup::FlightSetup(Problem problem, std::shared_ptr<const AeroMap> map)
-    : impl_(std::make_unique<Impl>(std::move(problem), std::move(map))) {}
+    : impl_(std::make_unique<Impl>(std::move(problem), map)) {}
 
 FlightSetup::~FlightSetup() = default;
 
@@ -87,7 +134,42 @@ const oc::SimpleSetupPtr& FlightSetup::simple_setup() const noexcept {
 ob::PlannerPtr FlightSetup::make_flight_tree_planner() const {
     const auto planner = std::make_shared<ControlledFlightTree>(impl_->setup->getSpaceInformation(), impl_->task);
     planner->set_max_iterations(impl_->plannable.problem.planner.max_iterations);
+    planning::CandidateHooks hooks;
+    hooks.survives_execution = [impl = impl_.get(), asking = planner.get()](const planning::Candidate& candidate) {
+        const Plan plan = planning::plan_through(candidate.moments, impl->model.flight->tick().tick_s);
+        return asking->has_users_goal() || impl->counts(plan, [asking] { return asking->is_over(); });
+    };
+    hooks.counterexamples = [impl = impl_.get()] {
+        const bool has_failed = impl->certificate && !impl->certificate->is_given;
+        return has_failed ? impl->worlds->counterexamples(*impl->certificate, impl->start)
+                          : std::vector<planning::Counterexample>{};
+    };
+    planner->set_hooks(std::move(hooks));
     return planner;
+}
+
+Certificate FlightSetup::certify(const Plan& plan) {
+    return impl_->certify(plan, {});
+}
+
+const std::optional<Certificate>& FlightSetup::certificate() const noexcept {
+    return impl_->certificate;
+}
+
+const ob::StateSpacePtr& FlightSetup::places() const noexcept {
+    return planning::places_of(*impl_->setup->getStateSpace());
+}
+
+Configuration FlightSetup::place_of(const ob::State* state) {
+    return configuration_of(planning::point_of(state).vehicle.plant.q);
+}
+
+double FlightSetup::energy_j_of(const ob::State* state) {
+    return planning::point_of(state).vehicle.plant.energy_j;
+}
+
+void FlightSetup::rest_at(const Configuration& place, ob::State* state) const {
+    planning::point_of(state) = planning::resting_at(*impl_->model.flight, place);
 }
 
 std::optional<Plan> FlightSetup::plan_of(const ob::Path& path) const {

@@ -12,7 +12,8 @@ using Fleet = std::vector<FlightState>;
 
 /// The same legs to be flown in every world.
 struct FleetJob {
-    std::vector<FlightJob> jobs;  ///< one in each world
+    std::vector<FlightJob> jobs;   ///< one in each world
+    bool is_hover_judged = false;  ///< the last leg is a hover that a GoalRegion judges, not the rules of the flight
 
     /// The legs as flown in the nominal world.
     [[nodiscard]] const std::vector<FlightLeg>& legs() const noexcept { return jobs.front().legs; }

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/search/ompl_space.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -24,25 +25,37 @@ class Moment : public ob::State {
     FlightPoint point;
 };
 
-/// Samples moments of rest with the caller's generator.
+/// Samples moments of rest at places that the sampler of the space of configurations draws.
 class Sampler : public ob::StateSampler {
  public:
-    Sampler(const ob::StateSpace* states, const SearchTask& task, Random& random)
-        : ob::StateSampler(states), task_(task), random_(random) {}
+    Sampler(const ob::StateSpace* states, const ob::StateSpacePtr& places, const SearchTask& task)
+        : ob::StateSampler(states),
+          task_(task),
+          place_(places),
+          beside_(places),
+          places_(places->allocStateSampler()) {}
 
     void sampleUniform(ob::State* state) override {
-        point_of(state) = resting_at(task_.model, task_.space.sample(random_));
+        places_->sampleUniform(place_.get());
+        rest_at_place(state);
     }
     void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
-        point_of(state) = resting_at(task_.model, task_.space.sample_near(point_of(near).rest, distance, random_));
+        write(point_of(near).rest, beside_.get(), task_.space);
+        places_->sampleUniformNear(place_.get(), beside_.get(), distance);
+        rest_at_place(state);
     }
     void sampleGaussian(ob::State* state, const ob::State* mean, double deviation) override {
-        sampleUniformNear(state, mean, 2 * deviation);
+        write(point_of(mean).rest, beside_.get(), task_.space);
+        places_->sampleGaussian(place_.get(), beside_.get(), deviation);
+        rest_at_place(state);
     }
 
  private:
+    void rest_at_place(ob::State* state) { point_of(state) = resting_at(task_.model, read(place_.get(), task_.space)); }
+
     const SearchTask& task_;
-    Random& random_;
+    ob::ScopedState<> place_, beside_;
+    ob::StateSamplerPtr places_;
 };
 
 /// The coordinates of the place of rest, angles as lengths.
@@ -71,20 +84,22 @@ class PlaceOfRest : public ob::ProjectionEvaluator {
 
 class FlightSpace : public ob::StateSpace {
  public:
-    FlightSpace(const SearchTask& task, Random& random) : task_(task), random_(random) {
+    FlightSpace(const SearchTask& task, Random& random)
+        : task_(task), random_(random), places_(make_configuration_space(task.space, random)) {
         setName("Flights");
         type_ = ob::STATE_SPACE_UNKNOWN;
     }
 
-    unsigned int getDimension() const override { return static_cast<unsigned int>(space().axes().size()); }
-    double getMaximumExtent() const override { return space().extent_m(); }
-    double getMeasure() const override {
-        double measure = 1;
-        for (const SearchAxis& axis : space().axes()) {
-            measure = measure * axis.weight_m * (axis.high - axis.low);
-        }
-        return measure;
+    [[nodiscard]] Random& random() const noexcept { return random_; }
+    [[nodiscard]] const ob::StateSpacePtr& places() const noexcept { return places_; }
+
+    void setup() override {
+        places_->setup();
+        ob::StateSpace::setup();
     }
+    unsigned int getDimension() const override { return places_->getDimension(); }
+    double getMaximumExtent() const override { return places_->getMaximumExtent(); }
+    double getMeasure() const override { return places_->getMeasure(); }
     /// Not one: moments of rest at the same place differ in cost and time. OMPL then searches neighbours in a way that
     /// draws no random numbers.
     bool isMetricSpace() const override { return false; }
@@ -106,7 +121,7 @@ class FlightSpace : public ob::StateSpace {
         point_of(state) = s < 0.5 ? point_of(from) : point_of(to);
     }
     ob::StateSamplerPtr allocDefaultStateSampler() const override {
-        return std::make_shared<Sampler>(this, task_, random_);
+        return std::make_shared<Sampler>(this, places_, task_);
     }
     ob::State* allocState() const override { return new Moment; }
     void freeState(ob::State* state) const override { delete static_cast<Moment*>(state); }
@@ -158,6 +173,7 @@ class FlightSpace : public ob::StateSpace {
 
     const SearchTask& task_;
     Random& random_;
+    ob::StateSpacePtr places_;
 };
 
 class Validity : public ob::StateValidityChecker {
@@ -193,12 +209,24 @@ ob::StateSpacePtr make_flight_space(const SearchTask& task, Random& random) {
     return std::make_shared<FlightSpace>(task, random);
 }
 
+Random& random_of(const ob::StateSpace& flights) {
+    return static_cast<const FlightSpace&>(flights).random();
+}
+
+const ob::StateSpacePtr& places_of(const ob::StateSpace& flights) {
+    return static_cast<const FlightSpace&>(flights).places();
+}
+
 ob::StateValidityCheckerPtr make_flight_validity(const ob::SpaceInformationPtr& information) {
     return std::make_shared<Validity>(information);
 }
 
 ob::OptimizationObjectivePtr make_flight_objective(const ob::SpaceInformationPtr& information) {
     return std::make_shared<FlightObjective>(information);
+}
+
+bool is_flight_objective(const ob::OptimizationObjective& objective) {
+    return dynamic_cast<const FlightObjective*>(&objective) != nullptr;
 }
 
 FlightGoal::FlightGoal(const ob::SpaceInformationPtr& information, const SearchTask& task, Random& random)

@@ -22,6 +22,11 @@ namespace downwash::planning {
 /// The moment that a state of that space holds, to read.
 [[nodiscard]] const FlightPoint& point_of(const ompl::base::State* state);
 
+/// The generator of such a space, from which its samplers draw.
+[[nodiscard]] Random& random_of(const ompl::base::StateSpace& flights);
+/// The space of configurations that such a space samples places in.
+[[nodiscard]] const ompl::base::StateSpacePtr& places_of(const ompl::base::StateSpace& flights);
+
 /// A moment is valid if the edge to it was not rejected.
 [[nodiscard]] ompl::base::StateValidityCheckerPtr make_flight_validity(
     const ompl::base::SpaceInformationPtr& information);
@@ -29,6 +34,9 @@ namespace downwash::planning {
 /// The task's objective: what the flight between two moments has cost. Any solution is good enough to be reported.
 [[nodiscard]] ompl::base::OptimizationObjectivePtr make_flight_objective(
     const ompl::base::SpaceInformationPtr& information);
+
+/// Whether an objective is such a one.
+[[nodiscard]] bool is_flight_objective(const ompl::base::OptimizationObjective& objective);
 
 /// The task's goal. Satisfied by a moment at rest within the goal region.
 class FlightGoal : public ompl::base::GoalSampleableRegion {

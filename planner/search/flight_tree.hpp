@@ -7,7 +7,7 @@
 
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/problem.hpp"
-#include "downwash/search/free_air_cost.hpp"
+#include "downwash/search/nearest_nodes.hpp"
 #include "downwash/search/planned_flights.hpp"
 #include "downwash/search/search_record.hpp"
 #include "downwash/search/search_space.hpp"
@@ -46,7 +46,9 @@ class FlightTree {
     [[nodiscard]] const std::vector<FlightNode*>& holds() const noexcept { return holds_; }
 
     /// The `count` nodes nearest to a configuration, nearest first; ties by age.
-    [[nodiscard]] std::vector<FlightNode*> nearest(const Configuration& to, std::size_t count) const;
+    [[nodiscard]] std::vector<FlightNode*> nearest(const Configuration& to, std::size_t count) const {
+        return nearest_.nearest(to, count);
+    }
 
     /// What the flight of an edge would cost far from all surfaces, without flying it.
     [[nodiscard]] double estimated_cost(const FlightNode& from, const Configuration& to) const;
@@ -99,14 +101,14 @@ class FlightTree {
     [[nodiscard]] std::optional<Flown> flown(const FlightNode& from, const FleetJob& job) const;
     [[nodiscard]] FleetJob hold_job(const FlightNode& at) const;
     [[nodiscard]] FleetJob edge_job(const FlightNode& from, const FlightNode& to) const;
+    FlightNode& attach(FlightNode& parent, const Flown& flight);
     bool move_below(FlightNode& node, FlightNode& parent, const Flown& flight);
 
     PlannedFlights& flights_;
     const SearchSpace& space_;
-    FreeAirCost free_air_cost_;
     std::deque<FlightNode> nodes_;
     std::vector<FlightNode*> moving_;
-    std::vector<Configuration> places_;  ///< configurations of moving_, in one piece of memory
+    NearestNodes nearest_;
     std::vector<FlightNode*> holds_;
 };
 

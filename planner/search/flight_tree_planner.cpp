@@ -41,9 +41,9 @@ FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& info
       parameters_(task.problem.planner),
       threads_(std::max(1, threads)),
       flights_(
-          task, [this] { return terminated_ != nullptr && (*terminated_)(); }, threads_),
+          task, [this] { return is_over(); }, threads_),
       refined_flights_(
-          task, [this] { return terminated_ != nullptr && (*terminated_)(); }, threads_),
+          task, [this] { return is_over(); }, threads_),
       refiner_random_(task.problem.planner.seed) {
     specs_.recognizedGoal = ompl::base::GOAL_SAMPLEABLE_REGION;
     specs_.approximateSolutions = true;
@@ -88,10 +88,42 @@ void FlightTreePlanner::clear() {
     tree_left_ = refiner_left_ = 0;
 }
 
+/// Takes on the goal of the problem definition.
+bool FlightTreePlanner::adopt_goal() {
+    const auto* goal = dynamic_cast<const ompl::base::GoalSampleableRegion*>(pdef_->getGoal().get());
+    const auto* flight_goal = dynamic_cast<const FlightGoal*>(goal);
+    if (goal == nullptr || (flight_goal != nullptr && &flight_goal->task() != &task_)) {
+        OMPL_ERROR("%s: the goal is no GoalSampleableRegion, or that of another task", getName().c_str());
+        return false;
+    }
+    users_goal_ = flight_goal == nullptr ? std::make_unique<OmplGoal>(si_, task_, *goal) : nullptr;
+    flights_.lead_to(users_goal_.get());
+    refined_flights_.lead_to(users_goal_.get());
+    return true;
+}
+
+/// Takes on the objective of the problem definition, if there is one.
+bool FlightTreePlanner::adopt_objective() {
+    const auto objective = pdef_->getOptimizationObjective();
+    const bool is_users = objective != nullptr && !is_flight_objective(*objective);
+    if (is_users && !is_additive(*objective)) {
+        OMPL_ERROR("%s: costs of the objective do not add up, or more of them is better", getName().c_str());
+        return false;
+    }
+    users_objective_ = is_users ? std::make_unique<OmplObjective>(si_, task_, *objective, *pdef_->getGoal()) : nullptr;
+    flights_.pay_by(users_objective_.get());
+    refined_flights_.pay_by(users_objective_.get());
+    constexpr unsigned int tries = 100;
+    sampler_ = std::make_unique<OmplSampler>(si_, task_,
+                                             is_users ? objective->allocInformedStateSampler(pdef_, tries) : nullptr);
+    return true;
+}
+
 void FlightTreePlanner::begin(const FlightPoint& start) {
-    Random random(task_.problem.planner.seed);
+    Random& random = random_of(*si_->getStateSpace());
+    random = Random(task_.problem.planner.seed);
     refiner_random_ = random.branch();
-    growth_.emplace(start, space_, parameters_, flights_, random);
+    growth_.emplace(start, space_, parameters_, flights_, random, *sampler_);
     refiner_.emplace(start, refined_flights_, refiner_random_);
     growth_->try_first(known_places_);
     if (known_plan_ && known_plan_->reference.size() > 1) {
@@ -110,11 +142,6 @@ FlightStatistics FlightTreePlanner::statistics() const {
 
 ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerminationCondition& terminated) {
     checkValidity();
-    const auto* goal = dynamic_cast<const FlightGoal*>(pdef_->getGoal().get());
-    if (goal == nullptr || &goal->task() != &task_) {
-        OMPL_ERROR("%s: the goal is not the FlightGoal of the planner's task", getName().c_str());
-        return ompl::base::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
-    }
     const ConditionScope scope(terminated_, terminated);
     if (!growth_) {
         const ompl::base::State* start = pis_.nextStart();
@@ -122,9 +149,19 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
             OMPL_ERROR("%s: there is no valid start", getName().c_str());
             return ompl::base::PlannerStatus::INVALID_START;
         }
+        if (!adopt_goal()) {
+            return ompl::base::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
+        }
+        if (!adopt_objective()) {
+            return ompl::base::PlannerStatus::ABORT;
+        }
         begin(point_of(start));
     }
-    const auto is_done = [this] { return best_ && stops_at_first_plan_; };
+    const auto is_done = [this] {
+        return best_ && (stops_at_first_plan_ ||
+                         (users_objective_ != nullptr &&
+                          pdef_->getOptimizationObjective()->isSatisfied(ompl::base::Cost(best_->cost))));
+    };
     while (!terminated && !is_used_up() && !is_done()) {
         if (growth_->has_plan() || refined_flights_.has_counterexamples()) {
             go_on_side_by_side(terminated);

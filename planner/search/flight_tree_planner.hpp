@@ -4,11 +4,13 @@
 
 #include <cmath>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "downwash/base/parallel.hpp"
 #include "downwash/search/flight_tree_parameters.hpp"
+#include "downwash/search/ompl_parts.hpp"
 #include "downwash/search/plan_refiner.hpp"
 #include "downwash/search/random.hpp"
 #include "downwash/search/tree_growth.hpp"
@@ -40,12 +42,14 @@ struct CandidateHooks {
 /// after the round. A round ends by the work done in it, so threads change nothing but the time. Anytime: the best plan
 /// only gets cheaper. The convergence theorem of RRT* assumes exact steering and is not claimed here.
 ///
-/// Keeps the contract of ompl::base::Planner. States are moments of flights (see flight_space.hpp). solve() continues
+/// Keeps the contract of ompl::base::Planner. States are moments of flights (see flight_space.hpp). Places are drawn by
+/// the space's state sampler, goals by whatever GoalSampleableRegion the problem definition has, and costs are those of
+/// its objective if they add up; under a user's objective its informed sampler draws, too. solve() continues
 /// with the tree there is; after clear() it does again what it did the first time. Numbers are parameters by the names
 /// that algorithms() lists for rrt-star; params() sets them.
 class FlightTreePlanner : public ompl::base::Planner {
  public:
-    /// @param information of make_flight_space() for the same task; solve() wants one start and the task's FlightGoal
+    /// @param information of make_flight_space() for the same task; solve() wants one start
     /// @param task gives seed and parameters too; must outlive the planner
     /// @param threads that the search may use, at least 1; the result does not depend on it
     FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, const SearchTask& task, int threads = 1);
@@ -69,6 +73,10 @@ class FlightTreePlanner : public ompl::base::Planner {
     /// Called after every batch, or round, before its plans are executed.
     void set_observer(std::function<void()> observer) { observer_ = std::move(observer); }
 
+    /// Whether the condition of the solve() under way says that it has to end.
+    [[nodiscard]] bool is_over() const { return terminated_ != nullptr && (*terminated_)(); }
+    /// Whether it searches for a goal that is not the task's.
+    [[nodiscard]] bool has_users_goal() const noexcept { return users_goal_ != nullptr; }
     [[nodiscard]] std::uint64_t iterations() const noexcept { return iterations_; }
     [[nodiscard]] const std::optional<Candidate>& best() const noexcept { return best_; }
     /// @pre solve() was called and found a start
@@ -89,6 +97,8 @@ class FlightTreePlanner : public ompl::base::Planner {
         bool is_good = false;        ///< it counts
     };
 
+    [[nodiscard]] bool adopt_goal();
+    [[nodiscard]] bool adopt_objective();
     void begin(const FlightPoint& start);
     void grow();
     void refine();
@@ -116,8 +126,11 @@ class FlightTreePlanner : public ompl::base::Planner {
     std::vector<Configuration> known_places_;
     const ompl::base::PlannerTerminationCondition* terminated_ = nullptr;  ///< condition of the solve() under way
 
-    PlannedFlights flights_;          ///< flights of the tree
-    PlannedFlights refined_flights_;  ///< flights of the refiner
+    PlannedFlights flights_;                          ///< flights of the tree
+    PlannedFlights refined_flights_;                  ///< flights of the refiner
+    std::unique_ptr<OmplGoal> users_goal_;            ///< nullptr: the goal is the task's
+    std::unique_ptr<OmplObjective> users_objective_;  ///< nullptr: the objective is the task's
+    std::unique_ptr<OmplSampler> sampler_;
     Random refiner_random_;
     std::optional<TreeGrowth> growth_;
     std::optional<PlanRefiner> refiner_;

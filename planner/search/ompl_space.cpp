@@ -10,8 +10,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "downwash/base/lane_math.hpp"
-
 namespace downwash::planning {
 namespace {
 
@@ -19,31 +17,42 @@ namespace ob = ompl::base;
 using RealVector = ob::RealVectorStateSpace::StateType;
 using Turn = ob::SO2StateSpace::StateType;
 
-/// It is a metric space, but if it said so OMPL would search neighbours with random numbers of its own seed.
+/// The translations as one space, then one for each joint: a circle, or an interval where it has limits. Distances are
+/// those of SearchSpace, the root of weighted squares. An angle on a circle may be given in any turn.
 class ConfigurationSpace : public ob::CompoundStateSpace {
  public:
-    bool isMetricSpace() const override { return false; }
-};
-
-/// The translations as one space, then one for each joint.
-ob::StateSpacePtr make_space(const SearchSpace& space) {
-    const auto position = std::make_shared<ob::RealVectorStateSpace>();
-    const auto compound = std::make_shared<ConfigurationSpace>();
-    compound->addSubspace(position, 1);
-    for (const SearchAxis& axis : space.axes()) {
-        if (axis.group == AxisGroup::translation) {
-            position->addDimension(axis.low, axis.high);
-        } else if (axis.wraps) {
-            compound->addSubspace(std::make_shared<ob::SO2StateSpace>(), axis.weight_m);
-        } else {
-            const auto joint = std::make_shared<ob::RealVectorStateSpace>(1);
-            joint->setBounds(axis.low, axis.high);
-            compound->addSubspace(joint, axis.weight_m);
+    explicit ConfigurationSpace(const SearchSpace& space) : search_(space) {
+        const auto position = std::make_shared<ob::RealVectorStateSpace>();
+        addSubspace(position, 1);
+        for (const SearchAxis& axis : space.axes()) {
+            if (axis.group == AxisGroup::translation) {
+                position->addDimension(axis.low, axis.high);
+            } else if (axis.wraps) {
+                addSubspace(std::make_shared<ob::SO2StateSpace>(), axis.weight_m);
+            } else {
+                const auto joint = std::make_shared<ob::RealVectorStateSpace>(1);
+                joint->setBounds(axis.low, axis.high);
+                addSubspace(joint, axis.weight_m);
+            }
         }
+        lock();
     }
-    compound->lock();
-    return compound;
-}
+
+    /// It is one, but if it said so OMPL would search neighbours with random numbers of its own seed.
+    bool isMetricSpace() const override { return false; }
+    double getMaximumExtent() const override { return search_.extent_m(); }
+    double distance(const ob::State* a, const ob::State* b) const override {
+        return search_.distance_m(read(a, search_), read(b, search_));
+    }
+    void interpolate(const ob::State* from, const ob::State* to, double s, ob::State* state) const override {
+        const Configuration a = read(from, search_);
+        write(between(a, search_.seen_from(a, read(to, search_)), s), state, search_);
+    }
+    bool satisfiesBounds(const ob::State* state) const override { return search_.is_inside(read(state, search_)); }
+
+ private:
+    const SearchSpace& search_;
+};
 
 /// Samples with the caller's generator.
 class Sampler : public ob::StateSampler {
@@ -52,16 +61,9 @@ class Sampler : public ob::StateSampler {
         : ob::StateSampler(states), search_(space), random_(random) {}
 
     void sampleUniform(ob::State* state) override { write(search_.sample(random_), state, search_); }
-
     void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
-        Configuration c = read(near, search_);
-        for (std::size_t axis = 0; axis < search_.axes().size(); ++axis) {
-            c[axis] += random_.uniform(-distance, distance) / search_.axes()[axis].weight_m;
-        }
-        write(c, state, search_);
-        space_->enforceBounds(state);
+        write(search_.sample_near(read(near, search_), distance, random_), state, search_);
     }
-
     void sampleGaussian(ob::State* state, const ob::State* mean, double deviation) override {
         // The sum of twelve uniform numbers is near enough to a normal one for a planner.
         const auto normal = [this] {
@@ -186,7 +188,7 @@ void write(const Configuration& c, ob::State* state, const SearchSpace& space) {
         if (axis.group == AxisGroup::translation) {
             compound->as<RealVector>(0)->values[translation++] = c[i];
         } else if (axis.wraps) {
-            compound->as<Turn>(joint++)->value = lane::wrap_angle(c[i]);
+            compound->as<Turn>(joint++)->value = c[i];
         } else {
             compound->as<RealVector>(joint++)->values[0] = c[i];
         }
@@ -210,13 +212,17 @@ Configuration read(const ob::State* state, const SearchSpace& space) {
     return c;
 }
 
-ob::SpaceInformationPtr make_space_information(const SearchSpace& space, Random& random, double motion_step_m,
-                                               QueryCounts& counts) {
-    const ob::StateSpacePtr states = make_space(space);
+ob::StateSpacePtr make_configuration_space(const SearchSpace& space, Random& random) {
+    const auto states = std::make_shared<ConfigurationSpace>(space);
     states->setStateSamplerAllocator([&space, &random](const ob::StateSpace* s) -> ob::StateSamplerPtr {
         return std::make_shared<Sampler>(s, space, random);
     });
-    auto information = std::make_shared<ob::SpaceInformation>(states);
+    return states;
+}
+
+ob::SpaceInformationPtr make_space_information(const SearchSpace& space, Random& random, double motion_step_m,
+                                               QueryCounts& counts) {
+    auto information = std::make_shared<ob::SpaceInformation>(make_configuration_space(space, random));
     information->setStateValidityChecker(std::make_shared<Validity>(information, space, counts));
     information->setMotionValidator(std::make_shared<StraightMotion>(information, space, motion_step_m, counts));
     information->setup();

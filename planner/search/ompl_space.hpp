@@ -16,8 +16,12 @@
 
 namespace downwash::planning {
 
-/// Space information over all axes (a joint is a circle, or an interval where it has limits) with sampler, validity and
-/// straight-line motions of the level vehicle. The arguments must outlive it.
+/// The configurations of a problem as a space of OMPL: the translations, then each joint, a circle or an interval where
+/// it has limits, with bounds and weights. Distances, interpolation and samples are those of SearchSpace. The arguments
+/// must outlive it.
+[[nodiscard]] ompl::base::StateSpacePtr make_configuration_space(const SearchSpace& space, Random& random);
+
+/// That space with validity and straight-line motions of the level vehicle. The arguments must outlive it.
 [[nodiscard]] ompl::base::SpaceInformationPtr make_space_information(const SearchSpace& space, Random& random,
                                                                      double motion_step_m, QueryCounts& counts);
 

@@ -22,11 +22,12 @@ constexpr double shortest_agile_split_s = 0.15;  ///< ... under a limit of thrus
 
 }  // namespace
 
-PlanChanges::PlanChanges(const SearchTask& task, Random& random)
-    : space_(task.space),
+PlanChanges::PlanChanges(const PlannedFlights& flights, Random& random)
+    : flights_(flights),
+      space_(flights.task().space),
       random_(random),
-      motion_(task.problem.motion),
-      tick_s_(1 / task.problem.robot.controller.rate_hz) {}
+      motion_(flights.task().problem.motion),
+      tick_s_(1 / flights.task().problem.robot.controller.rate_hz) {}
 
 double PlanChanges::noise(double size) {
     // A sum of uniform numbers: bell-shaped, bounded, and the same on every machine.
@@ -73,7 +74,7 @@ std::optional<ChangedPoints> PlanChanges::draw(const Points& points, const std::
 
 std::optional<ChangedPoints> PlanChanges::with_goal_moved(Points points, double step) {
     const std::size_t last = points.size() - 1;
-    const auto goal = space_.sample_goal_near(configuration_of(points[last]), step * largest_shift_m, random_);
+    const auto goal = flights_.goal().sample_near(configuration_of(points[last]), step * largest_shift_m, random_);
     if (!goal) {
         return std::nullopt;
     }

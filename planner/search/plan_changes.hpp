@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "downwash/search/planned_flights.hpp"
 #include "downwash/search/random.hpp"
-#include "downwash/search/search_task.hpp"
 
 namespace downwash::planning {
 
@@ -17,8 +17,8 @@ struct ChangedPoints {
 /// Draws random changes of a reference's points: what a pilot might try instead.
 class PlanChanges {
  public:
-    /// @param task and `random` must outlive it
-    PlanChanges(const SearchTask& task, Random& random);
+    /// @param flights of the plans; they and `random` must outlive it
+    PlanChanges(const PlannedFlights& flights, Random& random);
 
     /// One change, drawn at random; nothing when it cannot be made.
     /// @param points at least two; the first stays   @param ticks from each to the next
@@ -38,6 +38,7 @@ class PlanChanges {
     [[nodiscard]] double noise(double size);
     [[nodiscard]] std::size_t index_below(std::size_t count);
 
+    const PlannedFlights& flights_;
     const SearchSpace& space_;
     Random& random_;
     MotionLimits motion_;

@@ -35,7 +35,7 @@ constexpr double max_cost_ratio = 1.5;
 }  // namespace
 
 PlanRefiner::PlanRefiner(const FlightPoint& start, PlannedFlights& flights, Random& random)
-    : start_(start), flights_(flights), changes_(flights.task(), random) {}
+    : start_(start), flights_(flights), changes_(flights, random) {}
 
 const FlownPlan* PlanRefiner::best() const noexcept {
     return tracks_.empty() ? nullptr : &tracks_.front().plan;
@@ -225,7 +225,7 @@ std::optional<PlanRefiner::Change> PlanRefiner::changed(const std::vector<Refere
 
 std::optional<PlanRefiner::Change> PlanRefiner::moved_into_goal(const Change& plan, double share) {
     const Configuration end = configuration_of(plan.points.back());
-    const Configuration moved = flights_.task().space.moved_into_goal(end, share);
+    const Configuration moved = flights_.goal().moved_into(end, share);
     if (moved == end) {
         return std::nullopt;
     }

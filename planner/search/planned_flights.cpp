@@ -79,6 +79,8 @@ FlightStatistics& FlightStatistics::operator+=(const FlightStatistics& other) {
 
 PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_over, int threads)
     : task_(task),
+      goal_(task.space),
+      objective_(task),
       limits_(task.problem.motion),
       tick_s_(task.model.tick().tick_s),
       nominal_(edge_flights(task, planning_rules(task.problem, true, is_over), threads)) {
@@ -114,7 +116,7 @@ void PlannedFlights::count_rejection(Rejection rejection) {
 }
 
 bool PlannedFlights::leads_to_goal(const ReferenceSegment& segment) const {
-    return task_.space.is_near_goal(configuration_of(segment.to()));
+    return goal().contains(configuration_of(segment.to()));
 }
 
 void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at) {
@@ -122,7 +124,7 @@ void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection
     if (rejection == Rejection::interrupted || !leads_to_goal(segment)) {
         return;
     }
-    const double distance_m = task_.space.goal_distance_m(at);
+    const double distance_m = goal().distance_m(at);
     std::optional<Obstruction>& nearest = statistics_.obstruction;
     if (!nearest || distance_m < nearest->goal_distance_m) {
         nearest = {cause_of(rejection), at, distance_m};
@@ -212,8 +214,10 @@ FleetJob PlannedFlights::job(const Fleet& from, std::int64_t ticks_from_start, s
     FleetJob fleet;
     fleet.jobs.reserve(from.size());
     for (std::size_t i = 0; i < from.size(); ++i) {
-        fleet.jobs.push_back({from[i], legs, judged_ticks, world(i), task_.first_tick + ticks_from_start});
+        fleet.jobs.push_back(
+            {from[i], legs, goal().is_of_problem() ? judged_ticks : 0, world(i), task_.first_tick + ticks_from_start});
     }
+    fleet.is_hover_judged = judged_ticks > 0 && !goal().is_of_problem();
     return fleet;
 }
 
@@ -224,6 +228,7 @@ void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<Fleet
     }
     std::vector<FlightJob*> owners;
     std::vector<std::size_t> world_of;
+    std::vector<bool> is_judged_here;
     for (FleetJob& fleet : jobs) {
         if (!fleet.is_accepted()) {
             continue;
@@ -231,6 +236,7 @@ void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<Fleet
         for (const std::size_t i : worlds) {
             owners.push_back(&fleet.jobs[i]);
             world_of.push_back(i);
+            is_judged_here.push_back(fleet.is_hover_judged);
         }
     }
     std::vector<FlightJob> flown;
@@ -240,6 +246,9 @@ void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<Fleet
     }
     statistics_.states_checked += (worlds.front() == 0 ? *nominal_ : *other_worlds_).fly(flown);
     for (std::size_t i = 0; i < flown.size(); ++i) {
+        if (is_judged_here[i] && flown[i].rejection() == Rejection::none && !goal().is_met(flown[i].end())) {
+            flown[i].legs.back().flight.rejection = Rejection::goal_missed;
+        }
         count(flown[i]);
         rejected_in_[world_of[i]] += flown[i].rejected_leg() != nullptr ? 1 : 0;
         *owners[i] = std::move(flown[i]);
@@ -293,8 +302,7 @@ bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights&
     const FlightPoint& arrival = moments[moments.size() - 2];
     const FlightLeg hover = flights.hold_leg(arrival.reference);
     return is_at_rest(end.reference) && end.reference == arrival.reference &&
-           end.ticks - arrival.ticks == hover.segment.ticks() &&
-           meets_goal(flights.task().problem.goal, flights.task().model.tick().plant, end.vehicle);
+           end.ticks - arrival.ticks == hover.segment.ticks() && flights.is_met(end.vehicle);
 }
 
 void PlannedFlights::fly_again(FleetJob& fleet) const {
@@ -335,11 +343,9 @@ std::int64_t PlannedFlights::judged_ticks() const {
     return std::llround(goal_settling_s / tick_s_);
 }
 
-double PlannedFlights::cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const {
-    const double time_s = static_cast<double>(leg.flight.ticks) * tick_s_;
-    const FlightSums& sums = leg.flight;
-    return cost_before + task_.problem.planner.objective({sums, leg.end.plant.energy_j - from.plant.energy_j, time_s,
-                                                          leg.flight.clearance_integral});
+bool PlannedFlights::is_met(const FlightState& vehicle) const {
+    return goal().is_of_problem() ? meets_goal(task_.problem.goal, task_.model.tick().plant, vehicle)
+                                  : goal().is_met(vehicle);
 }
 
 double PlannedFlights::cost_after(double cost_before, const Fleet& from, const FleetJob& job, std::size_t leg) const {

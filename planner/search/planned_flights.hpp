@@ -9,6 +9,8 @@
 
 #include "downwash/search/edge_flights.hpp"
 #include "downwash/search/flight_point.hpp"
+#include "downwash/search/goal_region.hpp"
+#include "downwash/search/search_objective.hpp"
 #include "downwash/search/search_record.hpp"
 
 namespace downwash::planning {
@@ -32,6 +34,15 @@ class PlannedFlights {
     /// @param is_over asked now and then within flights, from all threads; true ends them without a result
     /// @param threads at least 1; nothing but the time depends on it
     explicit PlannedFlights(const SearchTask& task, std::function<bool()> is_over = {}, int threads = 1);
+
+    /// From now on flights lead to another goal, or are paid for by another objective, than that of the problem;
+    /// nullptr: the problem's. They must outlive the flights.
+    void lead_to(const GoalRegion* goal) noexcept { other_goal_ = goal; }
+    void pay_by(const SearchObjective* objective) noexcept { other_objective_ = objective; }
+    [[nodiscard]] const GoalRegion& goal() const noexcept { return other_goal_ != nullptr ? *other_goal_ : goal_; }
+    [[nodiscard]] const SearchObjective& objective() const noexcept {
+        return other_objective_ != nullptr ? *other_objective_ : objective_;
+    }
 
     /// From its next batch on flies with so many of its threads. May be called from any thread.
     void use_threads(int threads);
@@ -81,8 +92,13 @@ class PlannedFlights {
     [[nodiscard]] FlightLeg hold_leg(const ReferencePoint& at) const;
     [[nodiscard]] std::int64_t judged_ticks() const;
 
+    /// Whether a vehicle at the end of a hold has met the goal.
+    [[nodiscard]] bool is_met(const FlightState& vehicle) const;
+
     /// The cost from the start up to the end of a leg that began with `from`.
-    [[nodiscard]] double cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const;
+    [[nodiscard]] double cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const {
+        return cost_before + objective().of_leg(from, leg);
+    }
     /// The mean of that cost over the worlds of the search, counterexamples apart.
     [[nodiscard]] double cost_after(double cost_before, const Fleet& from, const FleetJob& job, std::size_t leg) const;
 
@@ -110,6 +126,10 @@ class PlannedFlights {
     void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
 
     const SearchTask& task_;
+    ProblemGoal goal_;
+    ProblemObjective objective_;
+    const GoalRegion* other_goal_ = nullptr;
+    const SearchObjective* other_objective_ = nullptr;
     MotionLimits limits_;
     double tick_s_;
     std::unique_ptr<EdgeFlights> nominal_;       ///< flies in the nominal world

@@ -49,16 +49,17 @@ double distance_from_way_m(const Configuration& place, const std::vector<Referen
 }  // namespace
 
 TreeGrowth::TreeGrowth(const FlightPoint& start, const SearchSpace& space, const FlightTreeParameters& parameters,
-                       PlannedFlights& flights, Random random)
+                       PlannedFlights& flights, Random& random, PlaceSampler& sampler)
     : space_(space),
       parameters_(parameters),
       flights_(flights),
       random_(random),
+      sampler_(sampler),
       passages_(flights.task()),
       tree_(start, flights),
       nearest_to_goal_(&tree_.root()),
-      nearest_distance_m_(space.goal_distance_m(tree_.root().configuration)) {
-    if (space_.is_near_goal(tree_.root().configuration)) {
+      nearest_distance_m_(flights.goal().distance_m(tree_.root().configuration)) {
+    if (flights_.goal().contains(tree_.root().configuration)) {
         const std::vector<FlightNode*> root{&tree_.root()};
         tree_.add_holds(root);
         note_best_hold();
@@ -113,7 +114,7 @@ std::optional<ReferencePoint> TreeGrowth::aim() {
     }
     // Goals are aimed at from any distance: what stands in between is found before anything is flown.
     const Configuration& nearest = tree_.nearest(*target_place, 1).front()->configuration;
-    const Configuration to = space_.is_near_goal(*target_place)
+    const Configuration to = flights_.goal().contains(*target_place)
                                  ? *target_place
                                  : space_.steered(nearest, *target_place, parameters_.range_share * space_.extent_m());
     if (const Rejection rejection = space_.rejection_at(to); rejection != Rejection::none) {
@@ -133,8 +134,8 @@ std::optional<Configuration> TreeGrowth::target() {
         return target_beside_plan();
     }
     return random_.chance(has_plan() ? parameters_.goal_bias : parameters_.first_goal_bias)
-               ? space_.sample_goal(random_)
-               : space_.sample(random_);
+               ? flights_.goal().sample(random_)
+               : sampler_.anywhere(parameters_.max_detour * best_hold_cost_);
 }
 
 std::optional<Configuration> TreeGrowth::target_beside_plan() {
@@ -142,8 +143,7 @@ std::optional<Configuration> TreeGrowth::target_beside_plan() {
     const auto i = static_cast<std::size_t>(random_.uniform(0, static_cast<double>(knots)));
     const Configuration knot = configuration_of((*known_plan_)[i].reference);
     const double radius_m = parameters_.local_radius_m * random_.uniform(0, 1) * random_.uniform(0, 1);
-    return i + 1 == knots ? space_.sample_goal_near(knot, radius_m, random_)
-                          : space_.sample_near(knot, radius_m, random_);
+    return i + 1 == knots ? flights_.goal().sample_near(knot, radius_m, random_) : sampler_.near(knot, radius_m);
 }
 
 std::size_t TreeGrowth::neighbour_count() const {
@@ -248,12 +248,12 @@ void TreeGrowth::add_holds(const std::vector<FlightNode*>& added) {
         if (node == nullptr || !is_at_rest(node->reference)) {
             continue;
         }
-        const double distance_m = space_.goal_distance_m(node->configuration);
+        const double distance_m = flights_.goal().distance_m(node->configuration);
         if (distance_m < nearest_distance_m_) {
             nearest_distance_m_ = distance_m;
             nearest_to_goal_ = node;
         }
-        if (space_.is_near_goal(node->configuration)) {
+        if (flights_.goal().contains(node->configuration)) {
             arrived.push_back(node);
         }
     }

@@ -9,6 +9,7 @@
 #include "downwash/search/flight_tree.hpp"
 #include "downwash/search/flight_tree_parameters.hpp"
 #include "downwash/search/passage_sampler.hpp"
+#include "downwash/search/place_sampler.hpp"
 #include "downwash/search/random.hpp"
 
 namespace downwash::planning {
@@ -17,9 +18,9 @@ namespace downwash::planning {
 /// chosen and nodes rewired by simulated cost; nodes within the goal's tolerances get holds.
 class TreeGrowth {
  public:
-    /// @param random the tree draws from it   All other arguments must outlive the growth.
+    /// All arguments must outlive the growth. @param sampler may draw from `random`, too
     TreeGrowth(const FlightPoint& start, const SearchSpace& space, const FlightTreeParameters& parameters,
-               PlannedFlights& flights, Random random);
+               PlannedFlights& flights, Random& random, PlaceSampler& sampler);
 
     /// One batch. @return the samples drawn: `max_samples`, or as many as make a batch
     std::uint64_t grow(std::optional<std::uint64_t> max_samples);
@@ -75,7 +76,8 @@ class TreeGrowth {
     const SearchSpace& space_;
     const FlightTreeParameters& parameters_;
     PlannedFlights& flights_;
-    Random random_;
+    Random& random_;
+    PlaceSampler& sampler_;
     PassageSampler passages_;
     /// Points on the way through a passage, each to be tried in a later batch than the one before.
     struct Due {

@@ -1,0 +1,103 @@
+#include "downwash/search/nearest_nodes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>  // which the header below forgets
+#include <utility>
+
+#include <ompl/datastructures/NearestNeighborsGNATNoThreadSafety.h>
+
+#include "downwash/search/flight_tree.hpp"
+
+namespace downwash::planning {
+
+/// OMPL's tree over places.
+struct NearestNodes::Index {
+    struct Place {
+        Configuration at;
+        std::size_t number;
+
+        bool operator==(const Place& other) const { return number == other.number; }
+        bool operator!=(const Place& other) const { return number != other.number; }
+    };
+
+    explicit Index(const SearchSpace& space) {
+        neighbors.setDistanceFunction(
+            [&space](const Place& a, const Place& b) { return space.distance_m(a.at, b.at); });
+    }
+
+    ompl::NearestNeighborsGNATNoThreadSafety<Place> neighbors;
+};
+
+NearestNodes::NearestNodes(const SearchSpace& space, std::size_t indexed_from)
+    : space_(space), indexed_from_(indexed_from) {}
+
+NearestNodes::~NearestNodes() = default;
+
+void NearestNodes::add(FlightNode& node) {
+    nodes_.push_back(&node);
+    places_.push_back(node.configuration);
+    if (index_ != nullptr) {
+        index_->neighbors.add({places_.back(), places_.size() - 1});
+    } else if (places_.size() >= indexed_from_) {
+        index_ = std::make_unique<Index>(space_);
+        std::vector<Index::Place> all;
+        all.reserve(places_.size());
+        for (std::size_t i = 0; i < places_.size(); ++i) {
+            all.push_back({places_[i], i});
+        }
+        index_->neighbors.add(all);
+    }
+}
+
+std::vector<NearestNodes::Found> NearestNodes::scanned(const Configuration& to, std::size_t count) const {
+    std::vector<Found> best;  // a heap
+    best.reserve(count + 1);
+    double farthest = HUGE_VAL;  // squared
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+        const double squared = space_.squared_distance_m2(places_[i], to, farthest);
+        if (squared >= farthest) {
+            continue;
+        }
+        best.emplace_back(squared, i);
+        std::push_heap(best.begin(), best.end());
+        if (best.size() > count) {
+            std::pop_heap(best.begin(), best.end());
+            best.pop_back();
+        }
+        if (best.size() == count) {
+            farthest = best.front().first;
+        }
+    }
+    std::sort_heap(best.begin(), best.end());
+    return best;
+}
+
+std::vector<NearestNodes::Found> NearestNodes::indexed(const Configuration& to, std::size_t count) const {
+    const Index::Place place{to, places_.size()};
+    std::vector<Index::Place> near;
+    index_->neighbors.nearestK(place, count, near);
+    // Which of several nodes at the same distance it gives depends on random numbers: all that are as near follow.
+    index_->neighbors.nearestR(place, space_.distance_m(near.back().at, to), near);
+    std::vector<Found> found;
+    found.reserve(near.size());
+    for (const Index::Place& each : near) {
+        found.emplace_back(space_.squared_distance_m2(each.at, to, HUGE_VAL), each.number);
+    }
+    std::sort(found.begin(), found.end());
+    found.resize(std::min(found.size(), count));
+    return found;
+}
+
+std::vector<FlightNode*> NearestNodes::nearest(const Configuration& to, std::size_t count) const {
+    if (count == 0) {
+        return {};
+    }
+    std::vector<FlightNode*> nodes;
+    for (const Found& found : index_ != nullptr ? indexed(to, count) : scanned(to, count)) {
+        nodes.push_back(nodes_[found.second]);
+    }
+    return nodes;
+}
+
+}  // namespace downwash::planning
