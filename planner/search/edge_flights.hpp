@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 
 #include "downwash/search/search_task.hpp"
@@ -33,9 +32,5 @@ class EdgeFlights {
     /// The rules that the flights keep.
     [[nodiscard]] virtual const FlightRules& rules() const noexcept = 0;
 };
-
-/// Edges as the level of a task's problem has them.
-/// @param task must outlive them   @param threads at least 1; nothing but the time depends on it
-[[nodiscard]] std::unique_ptr<EdgeFlights> edge_flights(const SearchTask& task, FlightRules rules, int threads);
 
 }  // namespace downwash::planning

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "downwash/search/free_air_cost.hpp"
-#include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash::planning {
@@ -40,7 +39,8 @@ LineFlights::LineFlights(const SearchTask& task, FlightRules rules)
     : task_(task), rules_(std::move(rules)), hover_power_w_(hover_power_w(task.model)) {}
 
 SegmentFlight LineFlights::flown(const ReferenceSegment& segment, FlightState& vehicle, std::uint64_t& checked) const {
-    constexpr double spacing_m = 0.1;
+    // So densely that the margin covers what happens between two poses.
+    const double spacing_m = std::min(max_unseen_motion_m(rules_.margin_m), 0.1);
     const SearchSpace& space = task_.space;
     const double tick_s = task_.model.tick().tick_s;
     const std::int64_t samples = std::min(samples_along(segment, task_, spacing_m), segment.ticks());
@@ -51,10 +51,6 @@ SegmentFlight LineFlights::flown(const ReferenceSegment& segment, FlightState& v
         const ReferencePoint reference = segment.at_tick(ticks);
         const Configuration at = configuration_of(reference);
         flight.rejection = space.rejection_at(at);
-        if (flight.rejection == Rejection::none &&
-            simulation::comes_nearer_between(task_.model, level_at(before), level_at(at), rules_.margin_m)) {
-            flight.rejection = Rejection::collision;
-        }
         ++checked;
         const double piece_s = static_cast<double>(ticks - flight.ticks) * tick_s;
         flight.ticks = ticks;

@@ -6,7 +6,9 @@
 #include <functional>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
+#include "downwash/search/closed_loop_flights.hpp"
 #include "downwash/search/line_flights.hpp"
 #include "downwash/simulation/execution.hpp"
 
@@ -27,6 +29,14 @@ FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::f
     rules.is_over = std::move(is_over);
     rules.measures_clearance = problem.planner.objective.weight(Objective::clearance) > 0;
     return rules;
+}
+
+/// Edges as the level of the task's problem has them.
+std::unique_ptr<EdgeFlights> edge_flights(const SearchTask& task, FlightRules rules, int threads) {
+    if (task.flies()) {
+        return std::make_unique<ClosedLoopFlights>(task, std::move(rules), threads);
+    }
+    return std::make_unique<LineFlights>(task, std::move(rules));
 }
 
 }  // namespace
