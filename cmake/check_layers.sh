@@ -21,8 +21,8 @@ simulation:            base scene dynamics effects grids aeromap controllers
 problems:              base scene dynamics effects grids aeromap controllers simulation
 planner/search:        base scene dynamics effects grids aeromap controllers simulation problems
 planner/ompl_planners: base scene dynamics effects grids aeromap controllers simulation problems search
-planner/ompl:          base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners
 planner:               base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners
+planner/ompl:          base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners planner
 results:               base scene dynamics effects grids aeromap controllers simulation problems search planner
 results/exports:       base scene dynamics effects grids aeromap controllers simulation problems search planner results
 judge:                 base scene dynamics effects grids aeromap controllers simulation problems results

@@ -29,7 +29,15 @@ FlightTree::FlightTree(const FlightPoint& start, PlannedFlights& flights)
     root.reference = start.reference;
     root.fleet = flights.task().fleet_from(start.vehicle);
     moving_.push_back(&nodes_.emplace_back(std::move(root)));
-    nearest_.add(*moving_.back());
+    nearest_.add(moving_.back()->configuration);
+}
+
+std::vector<FlightNode*> FlightTree::nearest(const Configuration& to, std::size_t count) const {
+    std::vector<FlightNode*> nodes;
+    for (const std::size_t number : nearest_.nearest(to, count)) {
+        nodes.push_back(moving_[number]);
+    }
+    return nodes;
 }
 
 double FlightTree::estimated_cost(const FlightNode& from, const Configuration& to) const {
@@ -87,7 +95,7 @@ std::vector<std::optional<FlightTree::Flown>> FlightTree::flown(std::span<const 
 FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {
     FlightNode& node = attach(parent, flight);
     moving_.push_back(&node);
-    nearest_.add(node);
+    nearest_.add(node.configuration);
     return node;
 }
 

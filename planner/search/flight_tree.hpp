@@ -7,7 +7,7 @@
 
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/problem.hpp"
-#include "downwash/search/nearest_nodes.hpp"
+#include "downwash/search/nearest_places.hpp"
 #include "downwash/search/planned_flights.hpp"
 #include "downwash/search/search_record.hpp"
 #include "downwash/search/search_space.hpp"
@@ -46,9 +46,7 @@ class FlightTree {
     [[nodiscard]] const std::vector<FlightNode*>& holds() const noexcept { return holds_; }
 
     /// The `count` nodes nearest to a configuration, nearest first; ties by age.
-    [[nodiscard]] std::vector<FlightNode*> nearest(const Configuration& to, std::size_t count) const {
-        return nearest_.nearest(to, count);
-    }
+    [[nodiscard]] std::vector<FlightNode*> nearest(const Configuration& to, std::size_t count) const;
 
     /// What the flight of an edge would cost far from all surfaces, without flying it.
     [[nodiscard]] double estimated_cost(const FlightNode& from, const Configuration& to) const;
@@ -108,7 +106,7 @@ class FlightTree {
     const SearchSpace& space_;
     std::deque<FlightNode> nodes_;
     std::vector<FlightNode*> moving_;
-    NearestNodes nearest_;
+    NearestPlaces nearest_;
     std::vector<FlightNode*> holds_;
 };
 

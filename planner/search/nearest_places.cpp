@@ -1,4 +1,4 @@
-#include "downwash/search/nearest_nodes.hpp"
+#include "downwash/search/nearest_places.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,12 +7,10 @@
 
 #include <ompl/datastructures/NearestNeighborsGNATNoThreadSafety.h>
 
-#include "downwash/search/flight_tree.hpp"
-
 namespace downwash::planning {
 
 /// OMPL's tree over places.
-struct NearestNodes::Index {
+struct NearestPlaces::Index {
     struct Place {
         Configuration at;
         std::size_t number;
@@ -29,14 +27,13 @@ struct NearestNodes::Index {
     ompl::NearestNeighborsGNATNoThreadSafety<Place> neighbors;
 };
 
-NearestNodes::NearestNodes(const SearchSpace& space, std::size_t indexed_from)
+NearestPlaces::NearestPlaces(const SearchSpace& space, std::size_t indexed_from)
     : space_(space), indexed_from_(indexed_from) {}
 
-NearestNodes::~NearestNodes() = default;
+NearestPlaces::~NearestPlaces() = default;
 
-void NearestNodes::add(FlightNode& node) {
-    nodes_.push_back(&node);
-    places_.push_back(node.configuration);
+void NearestPlaces::add(const Configuration& place) {
+    places_.push_back(place);
     if (index_ != nullptr) {
         index_->neighbors.add({places_.back(), places_.size() - 1});
     } else if (places_.size() >= indexed_from_) {
@@ -50,7 +47,7 @@ void NearestNodes::add(FlightNode& node) {
     }
 }
 
-std::vector<NearestNodes::Found> NearestNodes::scanned(const Configuration& to, std::size_t count) const {
+std::vector<NearestPlaces::Found> NearestPlaces::scanned(const Configuration& to, std::size_t count) const {
     std::vector<Found> best;  // a heap
     best.reserve(count + 1);
     double farthest = HUGE_VAL;  // squared
@@ -73,7 +70,7 @@ std::vector<NearestNodes::Found> NearestNodes::scanned(const Configuration& to, 
     return best;
 }
 
-std::vector<NearestNodes::Found> NearestNodes::indexed(const Configuration& to, std::size_t count) const {
+std::vector<NearestPlaces::Found> NearestPlaces::indexed(const Configuration& to, std::size_t count) const {
     const Index::Place place{to, places_.size()};
     std::vector<Index::Place> near;
     index_->neighbors.nearestK(place, count, near);
@@ -89,15 +86,15 @@ std::vector<NearestNodes::Found> NearestNodes::indexed(const Configuration& to, 
     return found;
 }
 
-std::vector<FlightNode*> NearestNodes::nearest(const Configuration& to, std::size_t count) const {
+std::vector<std::size_t> NearestPlaces::nearest(const Configuration& to, std::size_t count) const {
     if (count == 0) {
         return {};
     }
-    std::vector<FlightNode*> nodes;
+    std::vector<std::size_t> numbers;
     for (const Found& found : index_ != nullptr ? indexed(to, count) : scanned(to, count)) {
-        nodes.push_back(nodes_[found.second]);
+        numbers.push_back(found.second);
     }
-    return nodes;
+    return numbers;
 }
 
 }  // namespace downwash::planning
