@@ -289,6 +289,31 @@ std::vector<KeyError> algorithm_of_another_variant(const Problem& p) {
                                       hint}};
 }
 
+/// Settings of flights under the variant that flies nothing.
+std::vector<KeyError> flights_without_flying(const Problem& p) {
+    const PlannerSettings& given = p.planner;
+    const PlannerSettings defaults;
+    std::vector<KeyError> errors;
+    if (plans_flights(given.variant)) {
+        return errors;
+    }
+    const auto reject = [&errors](const char* key) {
+        errors.push_back({key,
+                          "is about flights, and the edges of mp-arm are lines: expected mp-arm-da or mp-arm-ada, or "
+                          "no such key"});
+    };
+    if (given.worlds != defaults.worlds) {
+        reject("planner.worlds");
+    }
+    if (given.max_saturation != defaults.max_saturation) {
+        reject("planner.max_saturation");
+    }
+    if (given.max_pitch_rate_rad_s) {
+        reject("planner.max_pitch_rate_deg_s");
+    }
+    return errors;
+}
+
 std::vector<KeyError> split_whole_numbers(const Problem& p) {
     std::vector<KeyError> errors;
     for (const auto& [name, value] : p.planner.parameters) {
@@ -304,7 +329,7 @@ std::vector<KeyError> unflyable_uncertainty(const Problem& p) {
     return p.uncertainty ? uncertainty_errors(*p.uncertainty, p.robot) : std::vector<KeyError>();
 }
 
-const std::array<Check<ProblemCheck>, 19> checks{{
+const std::array<Check<ProblemCheck>, 20> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names},
     {{"environment.obstacles"}, shapeless_cylinders},
@@ -325,6 +350,8 @@ const std::array<Check<ProblemCheck>, 19> checks{{
     {{"uncertainty", "robot.uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
     {{"planner.objective"}, weightless_objective},
     {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant},
+    {{"planner.variant", "planner.worlds", "planner.max_saturation", "planner.max_pitch_rate_deg_s"},
+     flights_without_flying},
     {{"planner.parameters"}, split_whole_numbers},
 }};
 

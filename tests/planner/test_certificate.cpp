@@ -27,22 +27,6 @@ using namespace downwash::test;
 
 namespace {
 
-/// The ceiling problem with what is not known, and a controller that bears it.
-Problem uncertain_problem() {
-    Problem problem = ceiling_problem();
-    ModelInversion& gains = gains_of(problem.robot);
-    gains.position_kp = 3;
-    gains.position_kd = 3.2;
-    gains.position_ki = 1.2;
-    gains.attitude_rate_ki = 10;
-    gains.arm_ki = 40;
-    problem.goal = tip_goal(3, 4.6);
-    problem.uncertainty.emplace();
-    problem.planner.worlds = 4;
-    problem.planner.max_failure_probability = 0.05;
-    return problem;
-}
-
 /// The share of searches in which some plan passes, all of which fail with probability p; ten plans in each.
 double share_that_passes(double p, double max_p, double confidence, int searches) {
     Random random(4);

@@ -91,4 +91,20 @@ inline Problem walled_problem() {
     return problem;
 }
 
+/// The ceiling problem with what is not known, and a controller that bears it.
+inline Problem uncertain_problem() {
+    Problem problem = ceiling_problem();
+    ModelInversion& gains = gains_of(problem.robot);
+    gains.position_kp = 3;
+    gains.position_kd = 3.2;
+    gains.position_ki = 1.2;
+    gains.attitude_rate_ki = 10;
+    gains.arm_ki = 40;
+    problem.goal = tip_goal(3, 4.6);
+    problem.uncertainty.emplace();
+    problem.planner.worlds = 4;
+    problem.planner.max_failure_probability = 0.05;
+    return problem;
+}
+
 }  // namespace downwash::test

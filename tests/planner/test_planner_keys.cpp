@@ -1,0 +1,108 @@
+#include <catch2/catch.hpp>
+#include <map>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "../support/same_bytes.hpp"
+#include "../support/test_problem.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/problems/algorithms.hpp"
+#include "downwash/problems/problem_parameters.hpp"
+#include "downwash/problems/problem_reader.hpp"
+
+// No planner key is silently ignored, whatever the variant and the algorithm.
+
+using namespace downwash;
+
+namespace {
+
+/// What a search did, as far as settings may change it.
+bool is_same(const Solution& a, const Solution& b) {
+    const auto plan_of = [](const Solution& s) { return s.plan.value_or(Plan{}); };
+    const auto improvements = [](const Solution& s) {
+        std::vector<std::pair<double, bool>> found;
+        for (const Improvement& each : s.planning.improvements) {
+            found.emplace_back(each.cost, each.flown_cost.has_value());
+        }
+        return found;
+    };
+    const auto certificate = [](const Solution& s) {
+        const Certificate c = s.certificate.value_or(Certificate{});
+        return std::tuple(s.certificate.has_value(), c.worlds, c.failures, c.failure_probability.high);
+    };
+    return a.status == b.status && a.cost == b.cost && a.execution_cost == b.execution_cost &&
+           a.planning.iterations == b.planning.iterations && a.planning.states_checked == b.planning.states_checked &&
+           a.planning.simulated_s == b.planning.simulated_s && improvements(a) == improvements(b) &&
+           a.planning.candidates.checked == b.planning.candidates.checked && certificate(a) == certificate(b) &&
+           a.plan.has_value() == b.plan.has_value() && test::same_bytes(plan_of(a), plan_of(b));
+}
+
+/// Another value than the default of every key that all algorithms have.
+const std::map<std::string, std::string, std::less<>> other_values{
+    {"planner.objective", "time"},
+    {"planner.max_iterations", "60"},
+    {"planner.seed", "5"},
+    {"planner.safety_margin_m", "0.2"},
+    {"planner.max_saturation", "1.5"},
+    {"planner.max_pitch_rate_deg_s", "3"},
+    {"planner.worlds", "2"},
+    {"planner.certify", "false"},
+    {"planner.check_execution", "false"},
+    {"planner.max_failure_probability", "0.3"},
+    {"planner.confidence", "0.6"},
+};
+
+Problem asked(Variant variant, std::string_view algorithm) {
+    Problem problem = test::uncertain_problem();
+    problem.planner.variant = variant;
+    problem.planner.algorithm = algorithm;
+    problem.planner.worlds = plans_flights(variant) ? 3 : PlannerSettings{}.worlds;
+    problem.planner.max_failure_probability = 0.2;
+    // The tip is to be where the rotors are asked for all that they have.
+    problem.robot.rotors.max_thrust_n *= 0.62;
+    problem.planner.max_iterations = algorithm == "rrt-star" ? 120 : plans_flights(variant) ? 400 : 1500;
+    return problem;
+}
+
+}  // namespace
+
+TEST_CASE("every planner key changes something with every algorithm, or is refused") {
+    for (const Variant variant : all_variants) {
+        for (const AlgorithmInfo& algorithm : algorithms()) {
+            if (!algorithm.plans_for(variant)) {
+                continue;
+            }
+            const Problem problem = asked(variant, algorithm.name);
+            const Solution before = solve(problem);
+            for (const auto& [key, value] : other_values) {
+                CAPTURE(name_of(variant), algorithm.name, key);
+                Problem changed = problem;
+                try {
+                    set_parameter(changed, key, value);
+                    CHECK_FALSE(is_same(before, solve(changed)));
+                } catch (const InputError& error) {
+                    CHECK(error.errors().front().key == key);
+                    CHECK(!plans_flights(variant));
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("every planner key that all algorithms have is among those that are tried") {
+    std::vector<std::string> untried;
+    for (const Parameter<Problem>& info : problem_parameters().rows()) {
+        const bool is_tried = other_values.contains(info.path);
+        const bool is_of_planner = info.path.starts_with("planner.") && info.kind != ParameterKind::group;
+        const bool is_of_algorithm = info.path.starts_with("planner.parameters");
+        const bool is_choice_of_algorithm = info.path == "planner.variant" || info.path == "planner.algorithm";
+        const bool is_wall_time = info.path == "planner.time_limit_s";  // every search asks the clock: test_solve.cpp
+        const bool is_weight = info.path.starts_with("planner.objective.");
+        if (is_of_planner && !is_tried && !is_of_algorithm && !is_choice_of_algorithm && !is_wall_time && !is_weight) {
+            untried.push_back(info.path);
+        }
+    }
+    CHECK(untried == std::vector<std::string>{});
+}
