@@ -114,7 +114,8 @@ bool CandidateCheck::flies_well(const Plan& plan) {
     return !is_bad;
 }
 
-/// Whether a plan can be left for a hover as long as the one that counts. The first one counts in any case.
+/// Whether a plan can be left for a hover as long as the one that counts. The first one counts in any case, and so does
+/// every one where execution is not checked: stops are flights near surfaces, too.
 bool CandidateCheck::can_stop(const Plan& plan) {
     stops_.reset();
     if (checks_.stop_finder == nullptr) {
@@ -125,7 +126,8 @@ bool CandidateCheck::can_stop(const Plan& plan) {
     } catch (const WorkStopped&) {  // too late to know, and to find another one
         return !has_plan();
     }
-    return !result_.found.safe_stops || !is_clearly_worse(*stops_, *result_.found.safe_stops);
+    return !task_.problem.planner.check_execution || !result_.found.safe_stops ||
+           !is_clearly_worse(*stops_, *result_.found.safe_stops);
 }
 
 /// Whether a plan fails rarely enough in worlds that the search has not seen. One that ends before the last goal needs

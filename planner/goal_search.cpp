@@ -46,6 +46,7 @@ SearchResult search_lines(CandidateCheck& check, const SolveOptions& options) {
     statistics.rejected["collision"] = found.counts.rejected_collision;
     statistics.rejected["bounds"] = found.counts.rejected_bounds;
     statistics.rejected["arm_limits"] = found.counts.rejected_arm_limits;
+    statistics.rejected["direct_flight"] = found.discarded;
     return result_of(check, std::move(found), statistics);
 }
 

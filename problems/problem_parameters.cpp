@@ -246,11 +246,6 @@ void add_planner(Rows& rows) {
     add_objective(rows);
     const auto is_uncertain = [](const Problem& p, std::size_t) { return p.uncertainty.has_value(); };
     constexpr std::string_view with_uncertainty = "with an uncertainty";
-    const auto flies = [](const Problem& p, std::size_t) { return plans_flights(p.planner.variant); };
-    const auto flies_in_worlds = [](const Problem& p, std::size_t) {
-        return p.uncertainty.has_value() && plans_flights(p.planner.variant);
-    };
-    constexpr std::string_view with_flights = "with mp-arm-da or mp-arm-ada, whose edges are flights";
     append(
         rows,
         {number("planner.time_limit_s",
@@ -268,21 +263,19 @@ void add_planner(Rows& rows) {
          number("planner.max_saturation",
                 "greatest demand on a rotor or the joint over its limit while planning; above 1 it is clipped",
                 of(&Settings::max_saturation))
-             .between(1, 1000)
-             .only(with_flights, flies),
+             .between(1, 1000),
          number("planner.max_pitch_rate_deg_s",
                 "how fast the vehicle may turn while planning; an edge that turns faster is rejected as unstable; "
                 "null: at any rate",
                 of(&Settings::max_pitch_rate_rad_s))
-             .between(1e-3, 1e5)
-             .only(with_flights, flies),
+             .between(1e-3, 1e5),
          parameters::flag<Problem>("planner.check_execution",
                                    "a plan counts only once it was executed well, with direct aerodynamics; false: "
                                    "also where that flight fails",
                                    of(&Settings::check_execution)),
          integer("planner.worlds", "in which every edge has to succeed, the nominal one included", &Settings::worlds)
              .between(1, 64)
-             .only("with an uncertainty, and mp-arm-da or mp-arm-ada, whose edges are flights", flies_in_worlds),
+             .only(with_uncertainty, is_uncertain),
          parameters::flag<Problem>("planner.certify", "only a plan that gets its certificate counts",
                                    of(&Settings::certify))
              .only(with_uncertainty, is_uncertain),

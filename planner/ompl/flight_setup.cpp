@@ -40,6 +40,18 @@ planning::PlannerModel model_of(const PlannableProblem& plannable, const std::sh
     return model;
 }
 
+/// Lets flights lead to the problem's goal again in the end.
+class GoalScope {
+ public:
+    explicit GoalScope(planning::PlannedFlights& flights) : flights_(flights) {}
+    ~GoalScope() { flights_.lead_to(nullptr); }
+    GoalScope(const GoalScope&) = delete;
+    GoalScope& operator=(const GoalScope&) = delete;
+
+ private:
+    planning::PlannedFlights& flights_;
+};
+
 /// Our planner among those over controls: the edges of its solutions are controls.
 class ControlledFlightTree : public planning::FlightTreePlanner {
  public:
@@ -178,6 +190,14 @@ std::optional<Plan> FlightSetup::plan_of(const ob::Path& path) const {
         throw std::invalid_argument("FlightSetup::plan_of() wants a path over controls");
     }
     const std::vector<planning::FlightPoint> moments = planning::moments_along(*way, impl_->flights);
+    // The hover is judged by the goal that was searched for.
+    const auto* goal = dynamic_cast<const ob::GoalSampleableRegion*>(impl_->setup->getGoal().get());
+    std::optional<planning::OmplGoal> users_goal;
+    if (goal != nullptr && dynamic_cast<const planning::FlightGoal*>(goal) == nullptr) {
+        users_goal.emplace(impl_->setup->getSpaceInformation(), impl_->task, *goal);
+    }
+    impl_->planned.lead_to(users_goal ? &*users_goal : nullptr);
+    const GoalScope scope(impl_->planned);
     if (moments.size() > 1 && planning::ends_with_hover(moments, impl_->planned)) {
         return planning::plan_through(moments, impl_->plannable.model->tick().tick_s);
     }

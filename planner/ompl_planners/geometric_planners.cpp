@@ -180,6 +180,7 @@ class LineSearch {
         }
         return result;
     }
+    [[nodiscard]] std::uint64_t discarded() const noexcept { return discarded_; }
 
  private:
     [[nodiscard]] bool has_plan() const noexcept { return result_.status == Status::solved; }
@@ -210,6 +211,7 @@ class LineSearch {
             result_.cost = cost;
             return;
         }
+        discarded_ += is_exact ? 1 : 0;
         const double off_m = space_.goal_distance_m(waypoints.back());
         if (!has_plan() && !is_too_long && waypoints.size() > 1 &&
             (result_.status == Status::none || off_m < result_.nearest_approach_m)) {
@@ -228,6 +230,7 @@ class LineSearch {
     std::function<std::size_t()> nodes_;
     std::optional<double> better_cost_;  ///< the planner has just found a path of this cost
     OmplResult result_;
+    std::uint64_t discarded_ = 0;
     bool is_over_ = false;
 };
 
@@ -273,7 +276,7 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
     prepared.planner->setup();
     LineSearch search(task, free_air_cost, hooks, counts);
     search.run(prepared, definition);
-    GeometricResult result{search.result(), counts};
+    GeometricResult result{search.result(), counts, search.discarded()};
     if (hooks.keep_tree) {
         result.tree = tree_of(*prepared.planner, [&space](const ob::State* state) { return read(state, space); });
     }

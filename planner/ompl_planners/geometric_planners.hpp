@@ -14,6 +14,7 @@ namespace downwash::planning {
 /// hold.
 struct GeometricResult : OmplResult {
     QueryCounts counts;
+    std::uint64_t discarded = 0;  ///< paths to the goal that did not count
 };
 
 /// MP-ARM: OMPL's geometric planners in (x, z, arm) with the vehicle level and straight edges; blind to dynamics

@@ -339,6 +339,7 @@ void PlannedFlights::verify(std::span<const FlightPoint> moments) const {
         const SegmentFlight flight = nominal_->fly_again(segment, point.vehicle);
         point.reference = segment.to();
         point.ticks = next.ticks;
+        point.others = next.others;  // not flown again
         if (flight.rejection != Rejection::none || !is_same_moment(point, next)) {
             throw std::logic_error("flying a plan again did not reproduce the planner's flight bit for bit");
         }

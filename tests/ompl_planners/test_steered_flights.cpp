@@ -168,8 +168,8 @@ TEST_CASE("a discarded plan is counted and each planner goes on to another") {
         Fixture f(problem);
         planning::Random random(1);
         int asked = 0;
-        planning::ControlHooks hooks;
-        hooks.is_over = [&](std::uint64_t iteration) { return iteration >= 20000 || asked >= 3; };
+        planning::OmplHooks hooks;
+        hooks.is_over = [&](const planning::OmplProgress& now) { return now.iteration >= 20000 || asked >= 3; };
         hooks.accept = [&](const Plan&, double, std::uint64_t) { return ++asked == 3; };
         const auto result = planning::plan_by_controls(f.steered, random, hooks);
         CHECK(asked == 3);
@@ -183,8 +183,8 @@ TEST_CASE("when every plan is discarded the nearest flight is approximate, never
     problem.planner.algorithm = "rrt";
     Fixture f(problem);
     planning::Random random(1);
-    planning::ControlHooks hooks;
-    hooks.is_over = [](std::uint64_t iteration) { return iteration >= 3000; };
+    planning::OmplHooks hooks;
+    hooks.is_over = [](const planning::OmplProgress& now) { return now.iteration >= 3000; };
     hooks.accept = [](const Plan&, double, std::uint64_t) { return false; };
     const auto result = planning::plan_by_controls(f.steered, random, hooks);
     CHECK(f.flights.statistics().rejected.at("direct_flight") > 0);

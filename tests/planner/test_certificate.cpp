@@ -139,15 +139,36 @@ TEST_CASE("The clearances of a certificate are those of flights with direct aero
     }
 }
 
-TEST_CASE("MP-ARM and MP-ARM-DA learn in which share of worlds their plan fails, and stay solved") {
+TEST_CASE("plans of every variant count with their certificate, or without one where it is not asked for") {
     Problem problem = uncertain_problem();
-    problem.planner.variant = GENERATE(Variant::mp_arm, Variant::mp_arm_da);
+    problem.planner.variant = GENERATE(Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada);
+    problem.planner.worlds = plans_flights(problem.planner.variant) ? 4 : PlannerSettings{}.worlds;
+    problem.planner.max_failure_probability = 0.2;
     problem.planner.max_iterations = 300;
     const Solution solution = solve(problem);
     REQUIRE(solution.status == Status::solved);
     REQUIRE(solution.certificate);
-    CHECK(solution.certificate->worlds > CertificateTest::most_failures);
-    CHECK_FALSE(solution.planning.first_certified_wall_s);
+    CHECK(solution.certificate->is_given);
+    CHECK(solution.planning.first_certified_wall_s);
+    problem.planner.certify = false;
+    const Solution uncertified = solve(problem);
+    REQUIRE(uncertified.status == Status::solved);
+    CHECK_FALSE(uncertified.certificate);
+    CHECK(uncertified.planning.candidates.failed_certificate == 0);
+}
+
+TEST_CASE("a certificate of MP-ARM-DA is flown near surfaces, of which its own worlds know nothing") {
+    Problem problem = uncertain_problem();
+    problem.planner.variant = Variant::mp_arm_da;
+    problem.planner.check_execution = false;
+    problem.planner.max_iterations = 150;
+    problem.uncertainty->ceiling_scale = Spread::of_sd(3);  // which kills flights near the ceiling, and those alone
+    const Solution solution = solve(problem);
+    REQUIRE(solution.plan);
+    CHECK(solution.status != Status::solved);
+    CHECK(solution.planning.candidates.failed_certificate > 0);
+    REQUIRE(solution.certificate);
+    CHECK(solution.certificate->failures > 0);
 }
 
 TEST_CASE("Goals in turn are certified as a whole, from start to end") {

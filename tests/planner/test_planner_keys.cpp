@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -60,8 +61,9 @@ Problem asked(Variant variant, std::string_view algorithm) {
     problem.planner.algorithm = algorithm;
     problem.planner.worlds = plans_flights(variant) ? 3 : PlannerSettings{}.worlds;
     problem.planner.max_failure_probability = 0.2;
-    // The tip is to be where the rotors are asked for all that they have.
-    problem.robot.rotors.max_thrust_n *= 0.62;
+    // The joint can hardly carry the arm, so that some flights ask it for more.
+    const ArmParameters& arm = problem.robot.arm;
+    problem.robot.arm.max_torque_nm = 1.02 * arm.mass_kg * standard_gravity_m_s2 * arm.center_of_mass_m;
     problem.planner.max_iterations = algorithm == "rrt-star" ? 120 : plans_flights(variant) ? 400 : 1500;
     return problem;
 }
@@ -79,13 +81,15 @@ TEST_CASE("every planner key changes something with every algorithm, or is refus
             for (const auto& [key, value] : other_values) {
                 CAPTURE(name_of(variant), algorithm.name, key);
                 Problem changed = problem;
+                set_parameter(changed, key, value);
+                std::optional<Solution> after;
                 try {
-                    set_parameter(changed, key, value);
-                    CHECK_FALSE(is_same(before, solve(changed)));
+                    after = solve(changed);
                 } catch (const InputError& error) {
                     CHECK(error.errors().front().key == key);
                     CHECK(!plans_flights(variant));
                 }
+                CHECK_FALSE((after && is_same(before, *after)));
             }
         }
     }

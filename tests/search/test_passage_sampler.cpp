@@ -22,6 +22,20 @@ struct Fixture {
     planning::SearchTask task{problem, *model, nullptr};
 };
 
+/// Draws from a space without OMPL.
+class SpaceSampler : public planning::PlaceSampler {
+ public:
+    SpaceSampler(const planning::SearchSpace& space, planning::Random& random) : space_(space), random_(random) {}
+    std::optional<Configuration> anywhere(double) override { return space_.sample(random_); }
+    Configuration near(const Configuration& place, double radius_m) override {
+        return space_.sample_near(place, radius_m, random_);
+    }
+
+ private:
+    const planning::SearchSpace& space_;
+    planning::Random& random_;
+};
+
 }  // namespace
 
 TEST_CASE("passages lead through the gap both ways, tilted, within the limits and free of collision") {
@@ -69,8 +83,9 @@ TEST_CASE("without passages the tree does not come through a gap as wide as the 
         f.problem.planner.parameters["passage_share"] = share;
         const planning::FlightTreeParameters parameters(f.problem.planner);
         planning::PlannedFlights flights(f.task);
-        planning::TreeGrowth growth(planning::start_point(f.task), f.task.space, parameters, flights,
-                                    planning::Random(6));
+        planning::Random random(6);
+        SpaceSampler sampler(f.task.space, random);
+        planning::TreeGrowth growth(planning::start_point(f.task), f.task.space, parameters, flights, random, sampler);
         double lowest = 10;
         for (int batch = 0; batch < 400 && !growth.has_plan(); ++batch) {
             static_cast<void>(growth.grow({}));
