@@ -17,8 +17,8 @@ struct Spread {
     double min = 0, low_quartile = 0, median = 0, high_quartile = 0, quantile_95 = 0;
 };
 
-/// The cost of the best plan so far at a moment of the search: the executed cost where the planner executes its plans
-/// (mp-arm-ada), otherwise the planned cost.
+/// The cost of the best plan so far at a moment of the search: the executed cost where plans are executed before they
+/// count, otherwise the planned cost.
 struct CostAt {
     double time_s = 0;
     Spread cost;
@@ -77,7 +77,7 @@ struct CellFigures {
     Share held;            ///< solved, and it was
     std::vector<std::pair<std::string, std::size_t>> failures_by_cause;  ///< outcomes and statuses, most frequent first
     Spread first_solution_s;
-    Spread verified_s;           ///< to the first plan that may be reported: that of mp-arm-ada was flown directly
+    Spread verified_s;           ///< to the first plan that may be reported, after all checks
     Spread answer_s;             ///< wall time of the whole run
     Spread flown_cost;           ///< executed costs of the flights that held
     double min_clearance_m = 0;  ///< over all flights of solved runs; NaN without any, infinite without obstacles

@@ -21,7 +21,7 @@ struct Found {
     double cost = 0;                  ///< the planner's own figure; 0 without a plan
     std::optional<Plan> plan;         ///< empty with Status::none
     std::optional<VisitOrder> order;  ///< order in which the plan visits targets; empty where the problem has none
-    std::optional<Certificate> certificate;  ///< certificate of the plan; empty without an uncertainty
+    std::optional<Certificate> certificate;  ///< certificate of the plan; empty if none was asked for
     std::optional<SafeStops> safe_stops;     ///< safe stops along a plan that solves the problem, if asked for
     std::optional<Execution> execution;      ///< the whole plan flown from the start with direct aerodynamics
     double flight_wall_s = 0;                ///< time that this flight took to simulate [s]

@@ -28,7 +28,7 @@ struct Solution : Found {
     int threads = 1;
     double execution_cost = 0;  ///< by the same objective in the flight with direct aerodynamics
     SearchRecord planning;
-    std::shared_ptr<const AeroMap> map;  ///< map that the search flew in, for SolveOptions::map of another; empty: none
+    std::shared_ptr<const AeroMap> map;  ///< map of the problem, for SolveOptions::map of another; empty: none
     std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one
 };
 

@@ -33,7 +33,7 @@ struct Progress {
 struct FoundPlan {
     const Plan& plan;                  ///< through all goals; valid during the call
     double cost = 0;                   ///< by the planner's own model
-    std::optional<double> flown_cost;  ///< cost of its flight with direct aerodynamics; mp-arm-ada only
+    std::optional<double> flown_cost;  ///< cost of its flight with direct aerodynamics, if that was checked
 };
 
 /// How a program takes part in a search. Its functions must not throw.
@@ -41,7 +41,7 @@ struct SolveOptions {
     int threads = 1;       ///< threads for flights and the aero map, below 1 as 1; the result does not depend on it
     std::stop_token stop;  ///< ends the search early, with the best plan so far
     std::function<void(const Progress&)> on_progress;  ///< called by solve()'s thread, ten times a second
-    /// Called by solve()'s thread with each plan that counts and is better than the last: of MP-ARM once, in the end.
+    /// Called by solve()'s thread with each plan that counts and is better than the last.
     std::function<void(const FoundPlan&)> on_plan;
     /// Called from the calling thread while the aero map is built, with the share of it that is begun; not where a map
     /// is reused.
@@ -52,8 +52,8 @@ struct SolveOptions {
     std::optional<Plan> known_plan;
     std::vector<Configuration> known_places;
     bool stop_at_first_solution = false;
-    /// Also says where a plan of mp-arm-ada can be left for a hover, and prefers plans that can be left for more of
-    /// their time to cheaper ones; takes a moment for each plan that counts.
+    /// Also says where a plan can be left for a hover, and prefers plans that can be left for more of their time to
+    /// cheaper ones; takes a moment for each plan that counts.
     bool finds_stops = false;
     bool keep_tree = false;  ///< also gives the search tree
     /// Reuses a map of the same problem, else std::invalid_argument; built when empty.

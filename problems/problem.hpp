@@ -27,7 +27,7 @@ namespace downwash {
 
 /// What the planner knows of the physics while it plans (thesis C.2).
 enum class Variant {
-    mp_arm,      ///< geometry only: straight lines of (x, z, arm), the vehicle level
+    mp_arm,      ///< geometry only: lines of (x, z, arm), which the level vehicle follows exactly
     mp_arm_da,   ///< dynamics-aware: closed-loop flights without surface effects
     mp_arm_ada,  ///< aerodynamics-aware: closed-loop flights through the aero map
 };

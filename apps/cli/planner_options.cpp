@@ -31,6 +31,8 @@ constexpr std::array planner_options{
     PlannerOption{"--max-iterations", "planner.max_iterations", "N", "",
                   "; without --time-limit it lifts the file's time limit"},
     PlannerOption{"--margin", "planner.safety_margin_m", "M", "", ""},
+    PlannerOption{"--check-execution", "planner.check_execution", "true|false", "", ""},
+    PlannerOption{"--certify", "planner.certify", "true|false", "", ""},
 };
 
 /// Reads "energy=1,time=50".
@@ -90,11 +92,12 @@ void PlannerOptions::add(Command command, std::string_view key) {
     ParameterInfo parameter = known;
     parameter.can_be_group = false;  // an option is a word
     const auto take = [this, key = option.key](const std::string& text) { given_[key] = text; };
+    static const std::vector<std::string_view> flag_words{"true", "false"};
     command
         .add_text(fmt::format("{} {}", option.name, option.placeholder), take,
                   fmt::format("{}{}: {}{} [{}]", option.meaning, parameter.description, expectation(parameter),
                               option.note, option.key))
-        .offers(parameter.names);
+        .offers(parameter.kind == ParameterKind::flag ? flag_words : parameter.names);
 }
 
 void PlannerOptions::apply_to(Problem& problem) const {

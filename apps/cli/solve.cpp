@@ -95,7 +95,7 @@ ExitCode run(const SolveArguments& given) {
         solution = downwash::solve(plannable, options);
     }
     const RunRecord record = folder.write(read, given.problem, warnings, solution);
-    // Of the variants only MP-ARM-ADA has a map. Without a search there is nothing to be shown yet.
+    // In free air there is no map. Without a map and a search there is nothing to be shown yet.
     if (solution.map != nullptr || solution.planning.iterations > 0 || !solution.interrupted) {
         write_page(folder.path(), record, given.threads);
     }
@@ -117,8 +117,9 @@ void add_solve(Command program, Action& action) {
                     "aerodynamics; write solution.json, trajectory.csv, tree.csv, effective.yaml and report.html",
                     run);
     add_problem(command, given.problem);
-    for (const std::string_view key : {"planner.variant", "planner.algorithm", "planner.objective", "planner.seed",
-                                       "planner.time_limit_s", "planner.max_iterations", "planner.safety_margin_m"}) {
+    for (const std::string_view key :
+         {"planner.variant", "planner.algorithm", "planner.objective", "planner.seed", "planner.time_limit_s",
+          "planner.max_iterations", "planner.safety_margin_m", "planner.check_execution", "planner.certify"}) {
         given.planner.add(command, key);
     }
     add_threads(command, given.threads);

@@ -47,10 +47,10 @@ plot concepts_factor.svg --model cheeseman-bennett sanchez-cuevas --z-over-r 0.2
 plot concepts_map.svg "$work/my_problem.yaml" --width 900
 plot concepts_hold.svg "$work/my_problem.yaml" --what hold --arm-deg 0 --width 900
 
-# Runs of the three variants.
+# Runs of the three variants, as they are without the check of their execution.
 run() { # VARIANT ITERATIONS EXIT-CODE: the picture of a flight, left in the folder work/run too
     local code=0
-    "$downwash" solve "$bridge" --variant "$1" --max-iterations "$2" --quiet --out "$work/run" >/dev/null || code=$?
+    "$downwash" solve "$bridge" --variant "$1" --max-iterations "$2" --check-execution false --quiet --out "$work/run" >/dev/null || code=$?
     if [[ $code != "$3" ]]; then
         echo "make.sh: $1 ended with $code instead of $3, so the captions in README.md and concepts.md would be wrong" >&2
         exit 1

@@ -17,7 +17,7 @@ struct GeometricResult : OmplResult {
     std::uint64_t discarded = 0;  ///< paths to the goal that did not count
 };
 
-/// MP-ARM: OMPL's geometric planners in (x, z, arm) with the vehicle level and straight edges; blind to dynamics
+/// For MP-ARM: OMPL's geometric planners in (x, z, arm) with the vehicle level and straight edges; blind to dynamics
 /// (thesis C.2). An iteration is one turn of the planner's own loop.
 /// Anytime planners go on for better plans; RRT-Connect ends with the first that is accepted, and begins anew after one
 /// that is not.

@@ -35,12 +35,13 @@ struct CandidateHooks {
     std::function<void(const Candidate&)> accept = {};
 };
 
-/// RRT* whose edges are closed-loop flights (variants MP-ARM-DA and MP-ARM-ADA): parents are chosen and nodes rewired
-/// by simulated cost. Samples come in batches, whose edges are simulated side by side. What the tree finds is refined
-/// to plans that do not stop at their corners. Once there is a plan the search goes on in rounds, in which the tree
-/// grows, plans are refined and the best one is executed, side by side; what each of them has found the others see
-/// after the round. A round ends by the work done in it, so threads change nothing but the time. Anytime: the best plan
-/// only gets cheaper. The convergence theorem of RRT* assumes exact steering and is not claimed here.
+/// RRT* whose edges are lines or closed-loop flights, as the variant has them (edge_flights.hpp): parents are chosen
+/// and nodes rewired by the cost of what was flown. Samples come in batches, whose edges are flown side by side. What
+/// the tree finds is refined to plans that do not stop at their corners. Once there is a plan the search goes on in
+/// rounds, in which the tree grows, plans are refined and the best one is executed, side by side; what each of them has
+/// found the others see after the round. A round ends by the work done in it, so threads change nothing but the time.
+/// Anytime: the best plan only gets cheaper. The convergence theorem of RRT* assumes exact steering and is not claimed
+/// here.
 ///
 /// Keeps the contract of ompl::base::Planner. States are moments of flights (see flight_space.hpp). Places are drawn by
 /// the space's state sampler, goals by whatever GoalSampleableRegion the problem definition has, and costs are those of

@@ -8,8 +8,8 @@ namespace downwash::planning {
 /// Power of the level, hovering vehicle far from all surfaces, arm still [W].
 [[nodiscard]] double hover_power_w(const FlightModel& model);
 
-/// What a motion costs far from all surfaces, without flying it: the cost of MP-ARM's straight edges, and the estimate
-/// by which the tree of flights decides what is worth flying.
+/// What a motion costs far from all surfaces, without flying it: the cost of straight edges of OMPL's planners, and the
+/// estimate by which our tree decides what is worth flying.
 class FreeAirCost {
  public:
     /// @param task must outlive it
