@@ -15,6 +15,7 @@
 #include "downwash/bench/machine.hpp"
 #include "downwash/bench/plan_evaluation.hpp"
 #include "downwash/bench/saved_copy.hpp"
+#include "downwash/planner/solve.hpp"
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/problem_writer.hpp"
 
@@ -66,6 +67,8 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
         {"max_iterations", c.max_iterations ? std::to_string(*c.max_iterations) : "none"},
         {"stop_at_first_solution", c.stop_at_first_solution ? "true" : "false"},
         {"as_believed", c.as_believed ? "true" : "false"},
+        {"check_execution", c.check_execution ? "true" : "false"},
+        {"certify", c.certify ? "true" : "false"},
         {"evaluation_worlds", std::to_string(c.evaluation_worlds)},
         {"variants", joined(c.variants, " ", [](Variant v) { return downwash::name_of(v); })},
         {"algorithms", joined(c.algorithms, " ")},
@@ -125,7 +128,7 @@ std::string error_of_combination(Problem problem, const PlannerSetup& planner) {
         }
     }
     for (const KeyError& error : problem_errors(problem)) {
-        if (error.key == "planner.algorithm" || error.key == "planner.variant") {
+        if (error.key.starts_with("planner.")) {
             return planner.name() + ": " + error.key + " " + error.message;
         }
     }
@@ -299,22 +302,27 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
     std::vector<Problem> problems;                     // one for each experiment
     std::vector<std::shared_ptr<const AeroMap>> maps;  // empty where each run reads it from the cache, as programs do
     std::vector<std::shared_ptr<PlanEvaluation>> evaluations;  // empty where plans are not flown in other worlds
-    const bool plans_need_maps =
-        !tasks.empty() && std::any_of(plan.planners.begin(), plan.planners.end(), [](const PlannerSetup& planner) {
-            return planner.variant == Variant::mp_arm_ada;
-        });
+    const auto plans_need_map = [&](Problem problem) {
+        return !tasks.empty() &&
+               std::any_of(plan.planners.begin(), plan.planners.end(), [&problem](const PlannerSetup& planner) {
+                   problem.planner.variant = planner.variant;
+                   return needs_map(problem, false);
+               });
+    };
     for (std::size_t p = 0; p < read.problems.size(); ++p) {
         Problem problem = read.problems[p];
         const Problem& judging = read.evaluated_in.empty() ? problem : read.evaluated_in.at(p);
         const bool is_evaluated = !tasks.empty() && plan.evaluation_worlds > 0 && judging.uncertainty.has_value();
         problem.planner.time_limit_s = plan.time_limit_s;
         problem.planner.max_iterations = read.campaign.max_iterations;
+        problem.planner.check_execution = problem.planner.check_execution && read.campaign.check_execution;
+        problem.planner.certify = problem.planner.certify && read.campaign.certify;
         const auto on_map_progress = [&](double share) {
             if (options.on_map_progress) {
                 options.on_map_progress(problem.name, share);
             }
         };
-        auto map = (plans_need_maps || is_evaluated) && problem.aero.enabled && !options.stop.stop_requested()
+        auto map = (plans_need_map(problem) || is_evaluated) && problem.aero.enabled && !options.stop.stop_requested()
                        ? make_flight_model(problem)->make_map(problem.bounds, jobs, on_map_progress, options.map_cache)
                        : nullptr;
         const auto evaluation = is_evaluated && !options.stop.stop_requested()

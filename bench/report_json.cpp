@@ -188,7 +188,7 @@ Json margin_json(const CampaignPlan& plan, const MarginFinding& finding) {
 /// A setting as what it is: a number, true or false, text; null for a limit that there is not.
 Json setting_json(std::string_view name, const std::string& value) {
     constexpr std::string_view numbers[] = {"jobs", "shards", "time_limit_s", "max_iterations", "evaluation_worlds"};
-    constexpr std::string_view flags[] = {"stop_at_first_solution", "as_believed"};
+    constexpr std::string_view flags[] = {"stop_at_first_solution", "as_believed", "check_execution", "certify"};
     if (std::ranges::find(flags, name) != std::end(flags)) {
         return value == "true";
     }

@@ -173,8 +173,7 @@ class Document {
         add("## Success and flights\n\n`failed flight`: the reported plan, executed with direct aerodynamics, "
             "collided, "
             "left the flyable area, became unstable or missed the goal,\nhovering there included. `discarded`: plans "
-            "of "
-            "the aware planner that failed in the same way, came nearer than the margin or were being\nexecuted when "
+            "that failed in the same way, came nearer than the margin, got no certificate or were being\nexecuted when "
             "the time was over, and were not reported. The minimum clearance is over the flights of all solved "
             "seeds.\n\n");
         heads({"problem", "planner", "solved", "failed flight", "solved and held", "failures by cause",
@@ -259,8 +258,7 @@ class Document {
         add("## Time to the first solution\n\nThe time starts with the parsed problem and includes its checks and the "
             "map "
             "from the cache. It ends with the first plan that the planner\naccepts; `verified`: with the first plan "
-            "that "
-            "may be reported, which the aware planner has executed with direct aerodynamics; `whole run`: with "
+            "that has passed all checks; `whole run`: with "
             "the\nend "
             "of the run, the flight of the reported plan included.\n\n");
         heads({"problem", "planner", "25 %", "median", "75 %", "95 %", "verified, median", "95 %", "whole run, median",
@@ -278,8 +276,8 @@ class Document {
     void costs() {
         add("## Cost\n\nMedian [quartiles]. `executed`: cost of the reported plan's flight, if it hovers at the goal, "
             "and "
-            "the `minimum` of these; before that, the cost of the\nbest plan so far: executed for the aware planner, "
-            "planned for the others, which do not consider the same physics.\n\n");
+            "the `minimum` of these; before that, the cost of the\nbest plan so far: executed or, without "
+            "check_execution, planned by what the variant knows.\n\n");
         std::vector<std::string> names{"problem", "planner"};
         for (const CostAt& at : report_.cells.empty() ? std::vector<CostAt>() : report_.cells.front().cost_over_time) {
             names.push_back(seconds_text(at.time_s));

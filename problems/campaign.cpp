@@ -86,6 +86,11 @@ void add_limits(Rows& rows) {
                 "as_believed",
                 "plan as with `uncertainty: none`; evaluation_worlds stay those of each problem's uncertainty",
                 &Campaign::as_believed),
+            parameters::flag<Campaign>("check_execution",
+                                       "false: plans count without being executed; true: each problem's own",
+                                       &Campaign::check_execution),
+            parameters::flag<Campaign>("certify", "false: plans count without a certificate; true: each problem's own",
+                                       &Campaign::certify),
             integer("evaluation_worlds",
                     "worlds of its problem's uncertainty in which every reported plan is flown; no "
                     "search has seen them, and they are the same for all plans of a problem",

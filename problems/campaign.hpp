@@ -59,7 +59,9 @@ struct Campaign {
     std::optional<double> time_limit_s;
     std::optional<std::uint64_t> max_iterations;
     bool stop_at_first_solution = false;
-    bool as_believed = false;  ///< plan as if nothing were uncertain
+    bool as_believed = false;     ///< plan as if nothing were uncertain
+    bool check_execution = true;  ///< false: no plan is executed before it counts; otherwise each problem's own
+    bool certify = true;          ///< false: no plan needs a certificate; otherwise each problem's own
     /// Worlds of the problem's uncertainty in which every reported plan is flown, the same for all plans of a problem.
     std::uint64_t evaluation_worlds = 0;
     std::optional<std::uint64_t> jobs;  ///< searches at a time; empty: one per processor, in a shard one

@@ -70,20 +70,3 @@ TEST_CASE("a hover on a line is judged by the goal") {
     const planning::FleetJob beside = f.flown(start, {0, 2, 0}, true);
     CHECK(beside.rejected_leg()->flight.rejection == Rejection::goal_missed);
 }
-
-TEST_CASE("MP-ARM's plans pass corners at speed like those of the other variants") {
-    Problem problem = lines();
-    problem.obstacles.push_back(test::box("post", {0.3, 8, 2}, {0, 0, 1}));
-    problem.planner.max_iterations = 600;
-    problem.planner.check_execution = false;
-    const Solution solution = solve(problem);
-    REQUIRE(solution.status == Status::solved);
-    bool moves_at_a_corner = false;
-    for (std::size_t i = 1; i + 1 < solution.plan->reference.size(); ++i) {
-        moves_at_a_corner = moves_at_a_corner || !is_at_rest(solution.plan->reference[i].point);
-    }
-    CHECK(moves_at_a_corner);
-    CHECK(solution.planning.edges_simulated == 0);
-    CHECK(solution.planning.simulated_s == 0);
-    CHECK(solution.planning.states_checked > 0);
-}

@@ -61,7 +61,7 @@ export function make_costs(model) {
     return make_figure(
         "costs", "Cost over time",
         "Of the best plan so far: median and quartiles over all attempted seeds, those without a plan counting as " +
-            "infinite. For MP-ARM-ADA it is the executed cost, for the others the planned cost. These differ in physics: " +
-            "compare the variants by executed cost, above.",
+            "infinite. It is the executed cost or, where plans are not executed before they count, the planned " +
+            "cost. Planned costs differ in physics: compare the variants by executed cost, above.",
         panels);
 }

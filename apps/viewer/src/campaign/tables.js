@@ -171,9 +171,9 @@ export function make_tables(model) {
           "Shares are of all attempted seeds, with 95 % Wilson intervals. A search found a plan if the planner accepted it by " +
               "what its variant knows. A flight has failed if the reported plan, executed " +
               "with direct aerodynamics up to the end of the hover at the goal, collided, left the flyable area, became " +
-              "unstable or missed the goal. Discarded are plans of MP-ARM-ADA that failed so, or came nearer than the " +
-              "margin, and were not reported. Verified is the time to the first plan that may be reported; MP-ARM-ADA " +
-              "has executed it with direct aerodynamics by then."),
+              "unstable or missed the goal. Discarded are plans that failed so, came nearer than the margin " +
+              "or got no certificate, and were not reported. Verified is the time to the first plan that has passed these " +
+              "checks."),
         flights_table(model), figures.bars.length > 0 ? folded(`Targets (${figures.bars.length})`, bars_table(model)) : null,
         ...[["In other worlds", worlds_table(model)], ["Parameters that decide alone", parameters_table(model)]]
             .filter(([, content]) => content !== null)
