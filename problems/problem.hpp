@@ -90,6 +90,8 @@ struct PlannerSettings {
     std::uint64_t worlds = 8;               ///< Worlds that every edge has to survive, the nominal one included, >= 1.
     double max_failure_probability = 0.01;  ///< Limit for a plan that is called solved, in (0, 1).
     double confidence = 0.95;               ///< Confidence of that limit, in (0, 1).
+    bool certify = true;                    ///< Whether a plan needs a certificate to be called solved.
+    bool check_execution = true;            ///< Whether a plan is executed before it counts, and discarded if it fails.
     ParameterValues parameters;             ///< Parameters of the algorithm that differ from their defaults.
 };
 
