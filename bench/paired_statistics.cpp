@@ -157,12 +157,17 @@ std::vector<double> holm_adjusted(std::span<const double> p_values) {
 Estimate bootstrap_mean(std::span<const std::vector<double>> groups, std::uint64_t draws) {
     double sum = 0;
     std::size_t count = 0;
+    bool has_spread = true;
     for (const std::vector<double>& group : groups) {
+        has_spread = has_spread && group.size() != 1;
         sum = std::accumulate(group.begin(), group.end(), sum);
         count += group.size();
     }
     if (count == 0) {
         return {not_a_number, not_a_number, not_a_number};
+    }
+    if (!has_spread) {
+        return {sum / static_cast<double>(count), not_a_number, not_a_number};
     }
     std::mt19937_64 random(1);  // NOLINT(cert-msc51-cpp): the same interval every time
     std::vector<double> means;

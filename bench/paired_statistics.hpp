@@ -62,7 +62,8 @@ struct PairCounts {
 [[nodiscard]] std::vector<double> holm_adjusted(std::span<const double> p_values);
 
 /// The mean of values that come in groups, with the percentile interval of a bootstrap that draws as many values from
-/// every group anew (B. Efron 1979). The same on every machine. NaN without values.
+/// every group anew (B. Efron 1979). The same on every machine. NaN without values; an interval of NaN where a group
+/// has one value alone, which says nothing of its spread.
 [[nodiscard]] Estimate bootstrap_mean(std::span<const std::vector<double>> groups, std::uint64_t draws = 2000);
 
 }  // namespace downwash::bench

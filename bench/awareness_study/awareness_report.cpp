@@ -89,9 +89,12 @@ std::string percent(const Share& share) {
 }
 
 std::string percent(const Estimate& share) {
-    return std::isnan(share.value)
-               ? "-"
-               : fmt::format("{:.2f} [{:.2f}, {:.2f}] %", 100 * share.value, 100 * share.low, 100 * share.high);
+    if (std::isnan(share.value)) {
+        return "-";
+    }
+    const std::string mean = fmt::format("{:.2f}", 100 * share.value);
+    return std::isnan(share.low) ? mean + " %"
+                                 : fmt::format("{} [{:.2f}, {:.2f}] %", mean, 100 * share.low, 100 * share.high);
 }
 
 std::string missed_text(const AwarenessCell& cell) {
@@ -172,12 +175,13 @@ std::string comparison_table(const std::vector<Comparison>& comparisons, bool cl
         "ratio [95 %] | p | adjusted | |\n";
     std::string table = heads + rule(heads.substr(1));
     for (const Comparison& each : comparisons) {
-        if (each.is_claim != claims || each.pairs + each.left_out == 0) {
+        if (each.is_claim != claims || (claims ? each.pairs + each.left_out : each.pairs) == 0) {
             continue;
         }
         const bool is_event = each.counts.pairs() > 0;
-        const auto interval = [](const Estimate& of) {
-            return fmt::format("{} [{}, {}]", text(of.value), text(of.low), text(of.high));
+        const auto end = [](double value) { return std::isinf(value) ? (value < 0 ? "-inf" : "inf") : text(value); };
+        const auto interval = [&end](const Estimate& of) {
+            return fmt::format("{} [{}, {}]", end(of.value), end(of.low), end(of.high));
         };
         table += fmt::format(
             "| {} | {} | {} | {} ({}) | {} | {} | {} | {} | {} | {}{} |\n", pair_text(each),

@@ -143,5 +143,8 @@ TEST_CASE("a bootstrap draws within groups: what differs between them alone has 
     CHECK(mixed.value == 0.5);
     CHECK(mixed.low == Approx(0.5 - 1.96 * 0.05).margin(0.015));
     CHECK(mixed.high == Approx(0.5 + 1.96 * 0.05).margin(0.015));
+    const Estimate alone = bootstrap_mean(std::vector<std::vector<double>>{{1, 2}, {3}});
+    CHECK(alone.value == 2);
+    CHECK(std::isnan(alone.low));
     CHECK(std::isnan(bootstrap_mean({}).value));
 }
