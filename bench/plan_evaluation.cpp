@@ -45,7 +45,9 @@ std::unique_ptr<WorldFlights> PlanEvaluation::take() {
             return flights;
         }
     }
-    return std::make_unique<WorldFlights>(problem_, model_, map_);
+    constexpr int threads = 1;
+    constexpr bool finds_clearance = false;
+    return std::make_unique<WorldFlights>(problem_, model_, map_, threads, finds_clearance);
 }
 
 void PlanEvaluation::give_back(std::unique_ptr<WorldFlights> flights) {
@@ -55,7 +57,8 @@ void PlanEvaluation::give_back(std::unique_ptr<WorldFlights> flights) {
 
 WorldFigures PlanEvaluation::evaluate(const Plan& plan) {
     std::unique_ptr<WorldFlights> flights = take();
-    const std::vector<WorldFlight> flown = flights->fly(plan, flights->goals().size(), worlds_);
+    std::call_once(has_starts_, [&] { starts_ = flights->starts_in(worlds_); });
+    const std::vector<WorldFlight> flown = flights->fly_from(starts_, plan, flights->goals().size(), worlds_);
     give_back(std::move(flights));
     const auto fails = [&](std::size_t world) { return flown[world].rejection != Rejection::none; };
     WorldFigures figures;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "downwash/bench/campaign_data.hpp"
@@ -38,6 +39,9 @@ class PlanEvaluation {
     std::shared_ptr<const AeroMap> map_;
     std::vector<std::string> parameters_;  ///< parameters that are not exact
     std::vector<FlownWorld> worlds_;       ///< those drawn; then each parameter at its low and its high quantile
+
+    std::once_flag has_starts_;
+    std::vector<std::optional<FlightState>> starts_;  ///< vehicles that have hovered in each world, for all plans
 
     std::mutex free_mutex_;
     std::vector<std::unique_ptr<WorldFlights>> free_;

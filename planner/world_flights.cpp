@@ -51,18 +51,19 @@ double min_clearance_m(const FlightJob& job) {
 }
 
 WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
-                           std::shared_ptr<const AeroMap> map, int threads)
+                           std::shared_ptr<const AeroMap> map, int threads, bool finds_clearance)
     : problem_(problem),
       model_(std::move(model)),
       map_(std::move(map)),
       goals_(goals_of(problem)),
       threads_(threads),
+      finds_clearance_(finds_clearance),
       pools_(goals_.size()) {}
 
 FlightPool& WorldFlights::pool(std::size_t goal) {
     if (pools_[goal] == nullptr) {
         FlightRules rules = rules_of_execution();
-        rules.finds_min_clearance = true;
+        rules.finds_min_clearance = finds_clearance_;
         rules.is_over = [this] { return is_over_ && is_over_(); };
         pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules, &goals_[goal], threads_);
     }
@@ -124,7 +125,13 @@ void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::
 std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits, std::span<const FlownWorld> worlds,
                                            const StopCondition& is_over) {
     const AskingScope scope(is_over_, is_over);
-    const std::vector<std::optional<FlightState>> starts = starts_in(worlds);
+    return fly_from(starts_in(worlds), plan, visits, worlds, is_over);
+}
+
+std::vector<WorldFlight> WorldFlights::fly_from(std::span<const std::optional<FlightState>> starts, const Plan& plan,
+                                                std::size_t visits, std::span<const FlownWorld> worlds,
+                                                const StopCondition& is_over) {
+    const AskingScope scope(is_over_, is_over);
     std::vector<WorldFlight> flights(worlds.size(), {Rejection::unstable, 0});
     std::vector<FlightJob> jobs;
     std::vector<std::size_t> world_of;

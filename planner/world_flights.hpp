@@ -28,9 +28,10 @@ class DOWNWASH_EXPORT WorldFlights {
  public:
     /// @param map of the planner's own model; nullptr for none: then surfaces do not act
     /// @param threads at least 1; nothing but the time depends on it
+    /// @param finds_clearance without it flights take a third less time, and their clearance is infinite
     /// @pre problem outlives it
     WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
-                 int threads = 1);
+                 int threads = 1, bool finds_clearance = true);
 
     ~WorldFlights() = default;
     WorldFlights(const WorldFlights&) = delete;
@@ -44,6 +45,13 @@ class DOWNWASH_EXPORT WorldFlights {
     /// @throws WorkStopped when it is over before all flights have ended
     [[nodiscard]] std::vector<WorldFlight> fly(const Plan& plan, std::size_t visits, std::span<const FlownWorld> worlds,
                                                const StopCondition& is_over = {});
+
+    /// The same from vehicles that are known already: several plans are flown in the same worlds.
+    /// @param starts of starts_in() with these worlds
+    [[nodiscard]] std::vector<WorldFlight> fly_from(std::span<const std::optional<FlightState>> starts,
+                                                    const Plan& plan, std::size_t visits,
+                                                    std::span<const FlownWorld> worlds,
+                                                    const StopCondition& is_over = {});
 
     /// Moves vehicles on along a plan, from one of its knots to another; a flight that ended stays as it is.
     /// @param goal number of the goal at which they hover in the end; empty: they are not judged
@@ -67,6 +75,7 @@ class DOWNWASH_EXPORT WorldFlights {
     std::shared_ptr<const AeroMap> map_;
     std::vector<Goal> goals_;
     int threads_;
+    bool finds_clearance_;
     StopCondition is_over_;                           ///< what fly() asks while it goes on
     std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
 };

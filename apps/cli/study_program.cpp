@@ -6,6 +6,6 @@
 int main(int argc, char** argv) {
     using namespace downwash::cli;
     return run_part("study", argc, argv, [](Command program, Action& action) {
-        add_study(program, action, {study_uncertainty, study_thesis});
+        add_study(program, action, {study_uncertainty, study_awareness, study_thesis});
     });
 }

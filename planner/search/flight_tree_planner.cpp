@@ -144,13 +144,13 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
     checkValidity();
     const ConditionScope scope(terminated_, terminated);
     if (!growth_) {
+        if (!adopt_goal()) {
+            return ompl::base::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
+        }
         const ompl::base::State* start = pis_.nextStart();
         if (start == nullptr) {
             OMPL_ERROR("%s: there is no valid start", getName().c_str());
             return ompl::base::PlannerStatus::INVALID_START;
-        }
-        if (!adopt_goal()) {
-            return ompl::base::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
         }
         if (!adopt_objective()) {
             return ompl::base::PlannerStatus::ABORT;

@@ -67,18 +67,18 @@ TEST_CASE("What several commands do has one name in all of them") {
     const std::vector<std::pair<std::string, std::set<std::string>>> expected{
         {"--out",
          {"solve", "execute", "validate", "aeromap build", "aeromap plot", "aeromap fit", "bench run", "bench slurm",
-          "bench parallel", "bench report", "study uncertainty", "study partial-ground-effect",
+          "bench parallel", "bench report", "study uncertainty", "study awareness", "study partial-ground-effect",
           "study disturbance-test-bench", "study ceiling-envelope", "study ceiling-contact", "report", "export"}},
         {"--quiet",
          {"solve", "execute", "validate", "aeromap query", "aeromap build", "aeromap plot", "bench run",
-          "study uncertainty", "study partial-ground-effect", "study disturbance-test-bench", "study ceiling-envelope",
-          "study ceiling-contact"}},
+          "study uncertainty", "study awareness", "study partial-ground-effect", "study disturbance-test-bench",
+          "study ceiling-envelope", "study ceiling-contact"}},
         {"--threads", {"solve", "execute", "validate", "aeromap query", "aeromap build", "report"}},
         {"--margin", {"solve", "execute"}},
-        {"--jobs", {"bench run", "bench slurm", "bench parallel", "study uncertainty"}},
+        {"--jobs", {"bench run", "bench slurm", "bench parallel", "study uncertainty", "study awareness"}},
         {"--plan", {"execute", "validate"}},
         {"--arm-deg", {"aeromap plot", "aeromap hold"}},
-        {"--no-cache", {"solve", "aeromap query", "bench run", "study uncertainty"}}};
+        {"--no-cache", {"solve", "aeromap query", "bench run", "study uncertainty", "study awareness"}}};
     for (const auto& [name, commands] : expected) {
         INFO(name);
         REQUIRE(options.contains(name));

@@ -33,6 +33,13 @@ TEST_CASE("A study says which problems it cannot use") {
     CHECK_THAT(sure.err, Contains("has no uncertainty to study"));
 }
 
+TEST_CASE("The study of awareness needs the problems of the sources") {
+    const Workspace work;
+    const Result none = work.run("study awareness --estimate");
+    CHECK(none.code == 2);
+    CHECK_THAT(none.err, Contains("there is no problem in the folder problems/"));
+}
+
 TEST_CASE("A study of the thesis' experiments writes findings, numbers, pictures and a page") {
     const Workspace work;
     const Result result = work.succeed("study ceiling-envelope --out out");

@@ -199,6 +199,16 @@ TEST_CASE("Flights of a plan that fail say on the way to which goal, as direct f
         worlds.push_back(make_world(problem.robot, draw_world(*problem.uncertainty, problem.robot, 1, i)));
     }
     const std::vector<WorldFlight> flown = flights.fly(*solution.plan, 2, worlds);
+    // Vehicles that are known already, and flights that find no clearance, change nothing else.
+    WorldFlights without_clearance(problem, model, model->make_map(problem.bounds), 1, false);
+    const std::vector<std::optional<FlightState>> starts = without_clearance.starts_in(worlds);
+    for (int times = 0; times < 2; ++times) {
+        const std::vector<WorldFlight> again = without_clearance.fly_from(starts, *solution.plan, 2, worlds);
+        for (std::size_t i = 0; i < worlds.size(); ++i) {
+            CHECK(again[i].rejection == flown[i].rejection);
+            CHECK(again[i].goal == flown[i].goal);
+        }
+    }
     int failed = 0;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         INFO("world " << i);

@@ -43,10 +43,10 @@ bool is_same(const Solution& a, const Solution& b) {
 /// Another value than the default of every key that all algorithms have.
 const std::map<std::string, std::string, std::less<>> other_values{
     {"planner.objective", "time"},
-    {"planner.max_iterations", "60"},
+    {"planner.max_iterations", "20"},
     {"planner.seed", "5"},
     {"planner.safety_margin_m", "0.2"},
-    {"planner.max_saturation", "1.5"},
+    {"planner.max_saturation", "3"},
     {"planner.max_pitch_rate_deg_s", "3"},
     {"planner.worlds", "2"},
     {"planner.certify", "false"},
@@ -57,14 +57,20 @@ const std::map<std::string, std::string, std::less<>> other_values{
 
 Problem asked(Variant variant, std::string_view algorithm) {
     Problem problem = test::uncertain_problem();
+    problem.start = Start::resting_at({2.2, 3.6, -test::quarter_turn});  // from where every algorithm finds a plan soon
     problem.planner.variant = variant;
     problem.planner.algorithm = algorithm;
     problem.planner.worlds = plans_flights(variant) ? 3 : PlannerSettings{}.worlds;
     problem.planner.max_failure_probability = 0.2;
-    // The joint can hardly carry the arm, so that some flights ask it for more.
+    problem.planner.max_iterations = algorithm == "rrt-star" ? 80 : 600;
+    return problem;
+}
+
+/// The same with a joint that can hardly carry the arm, so that some flights ask it for more.
+Problem with_weak_joint(Problem problem) {
     const ArmParameters& arm = problem.robot.arm;
     problem.robot.arm.max_torque_nm = 1.02 * arm.mass_kg * standard_gravity_m_s2 * arm.center_of_mass_m;
-    problem.planner.max_iterations = algorithm == "rrt-star" ? 120 : plans_flights(variant) ? 400 : 1500;
+    problem.planner.max_iterations = 40;
     return problem;
 }
 
@@ -76,11 +82,14 @@ TEST_CASE("every planner key changes something with every algorithm, or is refus
             if (!algorithm.plans_for(variant)) {
                 continue;
             }
-            const Problem problem = asked(variant, algorithm.name);
-            const Solution before = solve(problem);
+            const Problem usual = asked(variant, algorithm.name);
+            const Solution of_usual = solve(usual);
+            const Problem weak = with_weak_joint(usual);
+            const Solution of_weak = solve(weak);
             for (const auto& [key, value] : other_values) {
                 CAPTURE(name_of(variant), algorithm.name, key);
-                Problem changed = problem;
+                const bool is_about_demand = key == "planner.max_saturation";
+                Problem changed = is_about_demand ? weak : usual;
                 set_parameter(changed, key, value);
                 std::optional<Solution> after;
                 try {
@@ -89,7 +98,7 @@ TEST_CASE("every planner key changes something with every algorithm, or is refus
                     CHECK(error.errors().front().key == key);
                     CHECK(!plans_flights(variant));
                 }
-                CHECK_FALSE((after && is_same(before, *after)));
+                CHECK_FALSE((after && is_same(is_about_demand ? of_weak : of_usual, *after)));
             }
         }
     }

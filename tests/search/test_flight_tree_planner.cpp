@@ -1,4 +1,3 @@
-#include <ompl/base/goals/GoalState.h>
 #include <ompl/geometric/PathGeometric.h>
 
 #include <algorithm>
@@ -227,11 +226,22 @@ TEST_CASE("after clear() a planner does again what it did the first time") {
     CHECK(run() == first);
 }
 
+namespace {
+
+/// A goal that gives no samples.
+class Unsampled : public ompl::base::Goal {
+ public:
+    using Goal::Goal;
+    bool isSatisfied(const ompl::base::State*) const override { return false; }
+};
+
+}  // namespace
+
 TEST_CASE("a definition without the task's start or goal is no problem for this planner") {
     AsPlanner search;
     const planning::QuietOmpl quiet;
     SECTION("a goal of another kind") {
-        search.ompl.definition->setGoal(std::make_shared<ompl::base::GoalState>(search.ompl.information));
+        search.ompl.definition->setGoal(std::make_shared<Unsampled>(search.ompl.information));
         CHECK(search.solve(100) == ompl::base::PlannerStatus::UNRECOGNIZED_GOAL_TYPE);
     }
     SECTION("the goal of another task") {
