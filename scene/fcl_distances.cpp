@@ -12,9 +12,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <deque>
 #include <limits>
 #include <mutex>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -28,6 +32,8 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double gjk_tolerance = 1e-10;
 /// A distance that is proven up to this is not asked for again [m].
 constexpr double trusted_m = 1e-6;
+/// FCL's tree takes 4 us and 600 bytes a triangle: only those near which a robot comes are put into one.
+constexpr std::size_t max_triangles_together = 256;
 
 using Geometry = std::shared_ptr<fcl::CollisionGeometryd>;
 using Pose = fcl::Transform3d;
@@ -123,37 +129,48 @@ class Proxy {
     fcl::CollisionObjectd object_;
 };
 
-/// A tree over triangles.
-Geometry tree_of(const std::vector<Triangle>& triangles) {
-    auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-    model->beginModel(static_cast<int>(triangles.size()));
-    for (const Triangle& triangle : triangles) {
-        model->addTriangle(vector_of(triangle[0]), vector_of(triangle[1]), vector_of(triangle[2]));
+/// Some triangles of a scene.
+struct Triangles {
+    const std::vector<Triangle>* all;  ///< that the scene keeps
+    std::vector<std::uint32_t> which;
+
+    /// Calls use(triangle) for each.
+    template <class Use>
+    void each(const Use& use) const {
+        std::for_each(which.begin(), which.end(), [&](std::uint32_t i) { use((*all)[i]); });
     }
+};
+
+/// FCL's tree over triangles.
+Geometry tree_of(const Triangles& triangles) {
+    auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
+    model->beginModel(static_cast<int>(triangles.which.size()));
+    triangles.each([&](const Triangle& triangle) {
+        model->addTriangle(vector_of(triangle[0]), vector_of(triangle[1]), vector_of(triangle[2]));
+    });
     model->endModel();
     return model;
 }
 
-fcl::AABBd box_around(const std::vector<Triangle>& triangles) {
+fcl::AABBd box_around(const Triangles& triangles) {
     fcl::AABBd box;
-    for (const Triangle& triangle : triangles) {
+    triangles.each([&](const Triangle& triangle) {
         for (const Vector3& corner_m : triangle) {
             box += vector_of(corner_m);
         }
-    }
+    });
     return box;
 }
 
-/// A convex part of the scene in the world, or all its triangles.
+/// A convex part of the scene in the world, or some of its triangles.
 class Part {
  public:
     Part(Geometry geometry, const Pose& pose)
         : pose_(pose), geometry_(std::move(geometry)), proxy_(box_around(*geometry_, pose), contact_m) {
         proxy_.object()->setUserData(this);
     }
-    /// All triangles together. @param triangles that the caller keeps
-    explicit Part(const std::vector<Triangle>& triangles)
-        : pose_(Pose::Identity()), triangles_(&triangles), proxy_(box_around(triangles), contact_m) {
+    explicit Part(Triangles triangles)
+        : pose_(Pose::Identity()), triangles_(std::move(triangles)), proxy_(box_around(*triangles_), contact_m) {
         proxy_.object()->setUserData(this);
     }
     Part(const Part&) = delete;
@@ -162,7 +179,7 @@ class Part {
     static const Part& of(const fcl::CollisionObjectd& proxy) { return *static_cast<const Part*>(proxy.getUserData()); }
 
     const Pose& pose() const { return pose_; }
-    bool is_mesh() const { return triangles_ != nullptr; }
+    bool is_mesh() const { return triangles_.has_value(); }
     const fcl::AABBd& box() const { return proxy_.box(); }
     fcl::CollisionObjectd* proxy() { return proxy_.object(); }
     const fcl::CollisionGeometryd& geometry() const {
@@ -174,7 +191,7 @@ class Part {
 
  private:
     Pose pose_;
-    const std::vector<Triangle>* triangles_ = nullptr;
+    std::optional<Triangles> triangles_;
     mutable std::once_flag is_made_;
     mutable Geometry geometry_;  ///< of triangles: when first asked for
     Proxy proxy_;
@@ -310,6 +327,8 @@ struct FclDistances::Solids {
         const auto [geometry, at] = placed_solid(primitive, pose);
         parts.emplace_back(geometry, at);
     }
+    /// Neighbours become a part together. @param some of all; changes their order
+    void add_triangles(const std::vector<Triangle>& all, std::span<std::uint32_t> some);
     void add_pieces(const RobotShape& robot);
 
     Pose frame_at(const Eigen::Vector3d& origin_m, double angle_rad) const {
@@ -396,9 +415,9 @@ void FclDistances::Solids::add_parts() {
     for (const OctreeBox& box : placed.octree_boxes) {
         add_part(Box{box.size_m}, pose_of(placed.octree_placements[box.turned].rotation, box.center_m));
     }
-    if (!placed.triangles.empty()) {
-        parts.emplace_back(placed.triangles);
-    }
+    std::vector<std::uint32_t> all(placed.triangles.size());
+    std::iota(all.begin(), all.end(), 0U);
+    add_triangles(placed.triangles, all);
     std::vector<fcl::CollisionObjectd*> proxies;
     proxies.reserve(parts.size());
     for (Part& part : parts) {
@@ -408,6 +427,27 @@ void FclDistances::Solids::add_parts() {
         tree.registerObjects(proxies);
         tree.setup();
     }
+}
+
+void FclDistances::Solids::add_triangles(const std::vector<Triangle>& all, std::span<std::uint32_t> some) {
+    if (some.size() <= max_triangles_together) {
+        if (!some.empty()) {
+            parts.emplace_back(Triangles{&all, {some.begin(), some.end()}});
+        }
+        return;
+    }
+    fcl::AABBd corners;
+    for (const std::uint32_t i : some) {
+        corners += vector_of(all[i][0]);
+    }
+    Eigen::Index longest = 0;
+    (corners.max_ - corners.min_).maxCoeff(&longest);
+    const auto along = static_cast<std::size_t>(longest);
+    const auto middle = some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2);
+    std::nth_element(some.begin(), middle, some.end(),
+                     [&](std::uint32_t i, std::uint32_t j) { return all[i][0][along] < all[j][0][along]; });
+    add_triangles(all, {some.begin(), middle});
+    add_triangles(all, {middle, some.end()});
 }
 
 void FclDistances::Solids::add_pieces(const RobotShape& robot) {

@@ -20,7 +20,7 @@ enum class FclSolver : std::uint8_t {
 };
 
 /// A robot among the obstacles of a scene, for FCL: a tree of bounding boxes finds the few pairs in question, and FCL's
-/// solvers decide between them. Immutable but for the tree over all triangles, which is made when a robot first comes
+/// solvers decide between them. Immutable but for trees over triangles, each of which is made when a robot first comes
 /// near to them; every query may run in several threads.
 ///
 /// FCL decides contact to about 1e-6 m. Each of its solvers for distances ends far from the minimum now and then. Hence
