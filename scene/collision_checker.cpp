@@ -111,8 +111,7 @@ std::string_view name_of(CollisionCheckerKind kind) {
 }
 
 struct CollisionChecker::Impl {
-    Impl(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane, const RobotShape& robot,
-         CollisionCheckerKind kind);
+    Impl(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane, RobotShape robot, CollisionCheckerKind kind);
 
     const FclDistances& fcl() const {
         std::call_once(is_fcl_made, [this] { made_fcl = std::make_unique<const FclDistances>(scene, plane, robot); });
@@ -154,11 +153,11 @@ struct CollisionChecker::Impl {
 };
 
 CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> the_scene, const PlaneOfMotion& the_plane,
-                             const RobotShape& the_robot, CollisionCheckerKind the_kind)
+                             RobotShape the_robot, CollisionCheckerKind the_kind)
     : scene(std::move(the_scene)),
       solids(scene->solids()),
       plane(the_plane),
-      robot(the_robot),
+      robot(std::move(the_robot)),
       kind(the_kind),
       joint_m{robot.joint_x_m, 0, robot.joint_z_m} {
     require_valid(robot);
