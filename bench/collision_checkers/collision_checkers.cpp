@@ -198,7 +198,8 @@ void run(const Given& given) {
     fmt::print(
         "## Searches\n\nMP-ARM-ADA in the nominal world, {} iterations, seeds 1 to {}, problems checked and aero maps "
         "ready. Medians with "
-        "their 95 % intervals. `same` counts seeds whose executed flights are the same to the last bit.\n\n| problem | "
+        "their 95 % intervals. A first plan has been flown with direct aerodynamics. `same` counts seeds whose "
+        "executed flights are the same to the last bit.\n\n| problem | "
         "solved: own, fcl | first plan, own [ms] | first plan, fcl [ms] | iterations/s, own | iterations/s, fcl | "
         "iterations/s, own over fcl | same |\n| --- | --: | --: | --: | --: | --: | --: | --: |\n",
         given.iterations, given.seeds);
