@@ -6,6 +6,7 @@ find_package(Eigen3 REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(nlohmann_json REQUIRED)
+find_package(fcl REQUIRED)
 
 include(cmake/libompl.cmake)
 downwash_add_libompl(downwash_libompl)
@@ -45,8 +46,7 @@ macro(downwash_component NAME WHAT)
 endmacro()
 
 list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # the package brings its own finder
-downwash_component(JUDGE "the judge of plans, and downwash validate"
-  FINDS fcl DEBIAN libfcl-dev)
+downwash_component(JUDGE "the judge of plans, and downwash validate")
 downwash_component(FITTING "fits of surface-effect models to measurements, and downwash aeromap fit and compare"
   FINDS Ceres DEBIAN libceres-dev)
 downwash_component(EXPORTS "exports of runs for other programs, and downwash export"

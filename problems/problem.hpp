@@ -17,6 +17,7 @@
 #include "downwash/controllers/configuration.hpp"
 #include "downwash/controllers/reference_segment.hpp"
 #include "downwash/problems/objective.hpp"
+#include "downwash/scene/collision_checker_kind.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 #include "downwash/scene/shapes.hpp"
 #include "downwash/simulation/goal.hpp"
@@ -91,6 +92,8 @@ struct PlannerSettings {
     double safety_margin_m = 0.05;  ///< Least clearance while planning, >= 0.
     double max_saturation = 1;      ///< Greatest demand over its limit, of a rotor or the joint while planning, >= 1.
     std::optional<double> max_pitch_rate_rad_s;  ///< Limit of the vehicle while planning, > 0; empty: any.
+    /// Who computes collisions and clearances. In executed flights FCL decides contact, whatever stands here.
+    CollisionCheckerKind collision_checker = CollisionCheckerKind::own;
     // Where the problem has an uncertainty:
     std::uint64_t worlds = 8;               ///< Worlds that every edge has to survive, the nominal one included, >= 1.
     double max_failure_probability = 0.01;  ///< Limit for a plan that is called solved, in (0, 1).

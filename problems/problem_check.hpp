@@ -30,7 +30,7 @@ class ProblemCheck {
     /// @throws InputError as scene()
     [[nodiscard]] const CollisionChecker& collisions() const {
         if (!collisions_) {
-            collisions_.emplace(scene(), problem_.plane, problem_.robot.shape());
+            collisions_.emplace(scene(), problem_.plane, problem_.robot.shape(), problem_.planner.collision_checker);
         }
         return *collisions_;
     }

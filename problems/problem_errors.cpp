@@ -387,7 +387,8 @@ std::vector<KeyError> further_errors(const ProblemCheck& check, WrongKeys wrong)
 
 std::shared_ptr<const FlightModel> model_of(const ProblemCheck& check) {
     const Problem& problem = check.problem();
-    return std::make_shared<const FlightModel>(problem.robot, problem.plane, check.scene(), problem.aero);
+    return std::make_shared<const FlightModel>(problem.robot, problem.plane, check.scene(), problem.aero,
+                                               problem.planner.collision_checker);
 }
 
 std::vector<KeyError> further_problem_errors(const Problem& problem, WrongKeys wrong) {

@@ -6,7 +6,8 @@ namespace downwash {
 
 std::shared_ptr<const FlightModel> make_flight_model(const Problem& problem) {
     return std::make_shared<const FlightModel>(problem.robot, problem.plane,
-                                               std::make_shared<const Scene>(problem.obstacles), problem.aero);
+                                               std::make_shared<const Scene>(problem.obstacles), problem.aero,
+                                               problem.planner.collision_checker);
 }
 
 FlightState start_state(const FlightModel& model, const Start& start) {

@@ -260,6 +260,10 @@ void add_planner(Rows& rows) {
              .between(0, 4294967295.0),
          number("planner.safety_margin_m", "least clearance while planning", of(&Settings::safety_margin_m))
              .between(0, 100),
+         parameters::choice<Problem>("planner.collision_checker",
+                                     "who computes collisions and clearances; in executed flights FCL decides contact "
+                                     "whatever stands here",
+                                     parameters::named(all_collision_checkers), of(&Settings::collision_checker)),
          number("planner.max_saturation",
                 "greatest demand on a rotor or the joint over its limit while planning; above 1 it is clipped",
                 of(&Settings::max_saturation))

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/convex.hpp"
+#include "downwash/scene/fcl_distances.hpp"
 #include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
@@ -100,10 +102,21 @@ double reach_of(const Convex& convex) {
     return std::sqrt(squared);
 }
 
+constexpr std::string_view kind_names[] = {"own", "fcl"};
+
 }  // namespace
 
+std::string_view name_of(CollisionCheckerKind kind) {
+    return kind_names[static_cast<std::size_t>(kind)];
+}
+
 struct CollisionChecker::Impl {
-    Impl(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane, const RobotShape& robot);
+    Impl(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane, RobotShape robot, CollisionCheckerKind kind);
+
+    const FclDistances& fcl() const {
+        std::call_once(is_fcl_made, [this] { made_fcl = std::make_unique<const FclDistances>(scene, plane, robot); });
+        return *made_fcl;
+    }
 
     /// Calls `visit(piece placed in the world)` until it returns true; whether it did.
     template <class Visit>
@@ -129,17 +142,23 @@ struct CollisionChecker::Impl {
     std::shared_ptr<const Scene> scene;
     const SceneSolids& solids;
     PlaneOfMotion plane;
+    RobotShape robot;
+    CollisionCheckerKind kind;
     std::vector<Piece> pieces;
     Vector3 joint_m;          ///< in the body frame
     double reach_m = 0;       ///< the reach of all pieces
     double body_reach_m = 0;  ///< the reach of the pieces of the multirotor
+    mutable std::once_flag is_fcl_made;
+    mutable std::unique_ptr<const FclDistances> made_fcl;
 };
 
 CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> the_scene, const PlaneOfMotion& the_plane,
-                             const RobotShape& robot)
+                             RobotShape the_robot, CollisionCheckerKind the_kind)
     : scene(std::move(the_scene)),
       solids(scene->solids()),
       plane(the_plane),
+      robot(std::move(the_robot)),
+      kind(the_kind),
       joint_m{robot.joint_x_m, 0, robot.joint_z_m} {
     require_valid(robot);
     pieces = pieces_of(robot);
@@ -152,12 +171,19 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> the_scene, const Plane
 }
 
 CollisionChecker::CollisionChecker(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane,
-                                   const RobotShape& robot)
-    : impl_(std::make_shared<const Impl>(std::move(scene), plane, robot)) {}
+                                   const RobotShape& robot, CollisionCheckerKind kind)
+    : impl_(std::make_shared<const Impl>(std::move(scene), plane, robot, kind)) {}
+
+CollisionCheckerKind CollisionChecker::kind() const noexcept {
+    return impl_->kind;
+}
 
 bool CollisionChecker::is_nearer_than(const PlanarPose& pose, double margin_m) const {
     if (!is_finite(pose)) {
         return true;
+    }
+    if (impl_->kind == CollisionCheckerKind::fcl) {
+        return impl_->fcl().is_nearer_than(pose, margin_m);
     }
     return !impl_->is_far_away(pose, std::max(margin_m, contact_m)) &&
            impl_->any_piece(pose, [&](const Convex& piece) { return impl_->solids.are_near(piece, margin_m); });
@@ -170,6 +196,9 @@ double CollisionChecker::body_reach_m() const noexcept {
 double CollisionChecker::clearance_m(const PlanarPose& pose) const {
     if (!is_finite(pose)) {
         return -infinity;
+    }
+    if (impl_->kind == CollisionCheckerKind::fcl) {
+        return impl_->fcl().clearance_m(pose);
     }
     double min_m = infinity;
     impl_->any_piece(pose, [&](const Convex& piece) {

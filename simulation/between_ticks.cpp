@@ -14,20 +14,22 @@ PlanarPose between(const PlanarPose& from, const PlanarPose& to, double share) {
             from.arm_rad + share * (to.arm_rad - from.arm_rad)};
 }
 
+using Clearance = double (*)(const FlightModel&, const PlanarPose&);
+
 /// @param unseen_m the motion between both poses
-double min_clearance_m(const FlightModel& model, const PlanarPose& from, double from_m, const PlanarPose& to,
-                       double to_m, double unseen_m) {
+double min_clearance_m(const FlightModel& model, Clearance clearance_m, const PlanarPose& from, double from_m,
+                       const PlanarPose& to, double to_m, double unseen_m) {
     constexpr double least_motion_m = 0.001;
     if (from_m + to_m >= unseen_m || unseen_m <= least_motion_m) {
         return std::min(from_m, to_m);
     }
     const PlanarPose middle = between(from, to, 0.5);
-    const double middle_m = model.collisions().clearance_m(middle);
+    const double middle_m = clearance_m(model, middle);
     if (middle_m <= 0) {
         return middle_m;
     }
-    const double first_m = min_clearance_m(model, from, from_m, middle, middle_m, 0.5 * unseen_m);
-    return first_m <= 0 ? first_m : min_clearance_m(model, middle, middle_m, to, to_m, 0.5 * unseen_m);
+    const double first_m = min_clearance_m(model, clearance_m, from, from_m, middle, middle_m, 0.5 * unseen_m);
+    return first_m <= 0 ? first_m : min_clearance_m(model, clearance_m, middle, middle_m, to, to_m, 0.5 * unseen_m);
 }
 
 }  // namespace
@@ -55,8 +57,8 @@ bool comes_nearer_between(const FlightModel& model, const PlanarPose& from, cons
 }
 
 double least_clearance_between_m(const FlightModel& model, const PlanarPose& from, double from_m, const PlanarPose& to,
-                                 double to_m) {
-    return min_clearance_m(model, from, from_m, to, to_m, motion_m(model, from, to));
+                                 double to_m, Clearance clearance_m) {
+    return min_clearance_m(model, clearance_m, from, from_m, to, to_m, motion_m(model, from, to));
 }
 
 }  // namespace downwash::simulation

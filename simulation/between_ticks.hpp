@@ -22,8 +22,17 @@ namespace downwash::simulation {
 /// A clearance of zero or less that the robot has between two poses; without one, the lesser clearance of both poses.
 /// If the sum of two clearances is at least the motion between them, no contact is possible. Other intervals are halved
 /// until that holds, or until a corner can be cut by half a millimetre at most.
-/// @param from_m,to_m the clearances at both poses [m], above 0
+/// @param from_m,to_m the clearances at both poses [m], above 0   @param clearance_m measures those of other poses
 [[nodiscard]] double least_clearance_between_m(const FlightModel& model, const PlanarPose& from, double from_m,
-                                               const PlanarPose& to, double to_m);
+                                               const PlanarPose& to, double to_m,
+                                               double (*clearance_m)(const FlightModel&, const PlanarPose&));
+
+/// Clearances of planned and of executed flights, for least_clearance_between_m().
+[[nodiscard]] inline double planned_clearance_m(const FlightModel& model, const PlanarPose& pose) {
+    return model.collisions().clearance_m(pose);
+}
+[[nodiscard]] inline double executed_clearance_m(const FlightModel& model, const PlanarPose& pose) {
+    return model.executed_clearance_m(pose);
+}
 
 }  // namespace downwash::simulation

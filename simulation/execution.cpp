@@ -64,9 +64,9 @@ class Recorder {
     /// Looks at a new state: what it means for the flight, and for the figures of the whole.
     Rejection judge(const FlightState& state, const ReferencePoint& reference, bool is_first = false) {
         const PlanarPose pose = among_obstacles(pose_of(state), world_);
-        clearance_m_ = model_.collisions().clearance_m(pose);
+        clearance_m_ = model_.executed_clearance_m(pose);
         const PlanarPose checked = touch_ != nullptr ? simulation::off_surface(pose, *touch_, depth_m_) : pose;
-        const double checked_m = touch_ != nullptr ? model_.collisions().clearance_m(checked) : clearance_m_;
+        const double checked_m = touch_ != nullptr ? model_.executed_clearance_m(checked) : clearance_m_;
         const PlanarPose checked_before = std::exchange(checked_, checked);
         const double checked_before_m = std::exchange(checked_m_, checked_m);
         if (touch_ == nullptr) {
@@ -81,8 +81,8 @@ class Recorder {
             return Rejection::collision;
         }
         if (!is_first) {
-            const double between_m =
-                simulation::least_clearance_between_m(model_, checked_before, checked_before_m, checked, checked_m);
+            const double between_m = simulation::least_clearance_between_m(
+                model_, checked_before, checked_before_m, checked, checked_m, simulation::executed_clearance_m);
             if (between_m <= 0) {
                 execution_.min_clearance_m = std::min(execution_.min_clearance_m, between_m);
                 return Rejection::collision;

@@ -26,7 +26,7 @@ bool sees_neighbours(const AeroSettings& aero) {
 }  // namespace
 
 FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::shared_ptr<const Scene> scene,
-                         const AeroSettings& aero)
+                         const AeroSettings& aero, CollisionCheckerKind checker)
     : robot_(robot),
       plane_(plane),
       scene_(scene),
@@ -34,13 +34,28 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
             controllers::flown_law(robot.controller.law), 1 / robot.controller.rate_hz,
             aero.map ? TiltLoss{} : aero.tilt_loss},
       nominal_world_(make_world(robot, {})),
-      collisions_(scene, plane, robot.shape()) {
+      collisions_(scene, plane, robot.shape(), checker),
+      contacts_(checker == CollisionCheckerKind::fcl
+                    ? collisions_
+                    : CollisionChecker(scene, plane, robot.shape(), CollisionCheckerKind::fcl)) {
     if (has_walls(aero)) {
         tick_.plant.has_walls = true;
         tick_.plant.wall_force = aero.wall.force;
         tick_.plant.wall_moment_m = aero.wall.moment * robot.rotors.radius_m;
     }
     layers_ = effect_layers(robot.rotors, scene, aero, plane.heading_rad());
+}
+
+double FlightModel::executed_clearance_m(const PlanarPose& pose) const {
+    constexpr double least_apart_m = 1e-8;  // solids that are less apart are in contact
+    const double clearance_m = collisions_.clearance_m(pose);
+    if (collisions_.kind() == CollisionCheckerKind::fcl) {
+        return clearance_m;
+    }
+    if (contacts_.is_nearer_than(pose, 0)) {
+        return std::min(clearance_m, 0.0);
+    }
+    return clearance_m > 0 ? clearance_m : least_apart_m;
 }
 
 std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int threads,

@@ -35,9 +35,9 @@ struct EffectLayers {
 /// A robot in its world: everything that a flight needs and never changes. Safe to share between threads.
 class DOWNWASH_EXPORT FlightModel {
  public:
-    /// @pre robot_errors(robot) is empty
+    /// @param checker who answers collisions()   @pre robot_errors(robot) is empty
     FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::shared_ptr<const Scene> scene,
-                const AeroSettings& aero);
+                const AeroSettings& aero, CollisionCheckerKind checker = CollisionCheckerKind::own);
 
     [[nodiscard]] const Robot& robot() const noexcept { return robot_; }
     [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
@@ -49,7 +49,10 @@ class DOWNWASH_EXPORT FlightModel {
     [[nodiscard]] bool flies_plainly() const noexcept {
         return robot_.controller.delay_s == 0 && !tick_.plant.has_drag;
     }
+    /// Collisions and clearances in everything but what executed_clearance_m() says.
     [[nodiscard]] const CollisionChecker& collisions() const noexcept { return collisions_; }
+    /// The clearance in an executed flight [m]: that of collisions(), but FCL decides whether there is contact.
+    [[nodiscard]] double executed_clearance_m(const PlanarPose& pose) const;
     /// The layers of surface effects: those that a map of this model has.
     [[nodiscard]] const std::vector<MapLayer>& layers() const noexcept { return layers_.layers; }
     /// Number of the layer of rotor i.
@@ -108,6 +111,7 @@ class DOWNWASH_EXPORT FlightModel {
     simulation::TickModel tick_;
     FlownWorld nominal_world_;
     CollisionChecker collisions_;
+    CollisionChecker contacts_;  ///< FCL's
     EffectLayers layers_;
 };
 

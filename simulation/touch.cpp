@@ -24,8 +24,8 @@ TouchFlight fly_touch(const FlightModel& model, const AeroMap* map, const Touch&
         const PlanarPose pose = among_obstacles(pose_of(next), world);
         const PlanarPose off = simulation::off_surface(pose, touch, contact.depth_m);
         const double clearance_m = model.collisions().clearance_m(off);
-        if (clearance_m <= 0 ||
-            simulation::least_clearance_between_m(model, pose_before, before_m, off, clearance_m) <= 0) {
+        if (clearance_m <= 0 || simulation::least_clearance_between_m(model, pose_before, before_m, off, clearance_m,
+                                                                      simulation::planned_clearance_m) <= 0) {
             return Rejection::collision;
         }
         pose_before = off;

@@ -37,14 +37,17 @@ constexpr char exit_codes[] =
     "130 after SIGINT, 143 after SIGTERM: the best solution so far is written; a second signal ends at once.";
 
 /// A program that has commands of an optional component, and the Debian packages that it needs beside those of
-/// downwash.
+/// downwash; empty: none.
 struct Part {
     std::string_view name, packages;
 };
 
 constexpr std::array parts{
-    Part{"aeromap", "libceres-dev"}, Part{"bench", "libsqlite3-dev"}, Part{"export", "libgeographiclib-dev"},
-    Part{"study", "libsqlite3-dev"}, Part{"validate", "libfcl-dev"},
+    Part{"aeromap", "libceres-dev"},
+    Part{"bench", "libsqlite3-dev"},
+    Part{"export", "libgeographiclib-dev"},
+    Part{"study", "libsqlite3-dev"},
+    Part{"validate", ""},
 };
 
 /// CLI11 would call an unknown option an argument that was not expected.
@@ -125,9 +128,9 @@ ExitCode checked_output(ExitCode code) {
     }
     throw UsageError(
         "this command is in the program downwash-{}, which is not in {}: `./dev build` builds it, as does `cmake "
-        "--build` "
-        "where {} is installed",
-        name, program.parent_path().string(), part->packages);
+        "--build`{}",
+        name, program.parent_path().string(),
+        part->packages.empty() ? "" : " where " + std::string(part->packages) + " is installed");
 }
 
 ExitCode run(std::span<char*> words, void (*add_commands)(Command program, Action& action)) {

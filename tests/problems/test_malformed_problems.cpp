@@ -201,8 +201,9 @@ const Edit edits[] = {
     {"seed: 1", "seed: 1, safety_margin: 0.1, colour: 7, max_iteration: 4",
      "16:81: unknown key 'safety_margin' in planner: its unit is missing; expected safety_margin_m\n16:101: unknown "
      "key 'colour' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
-     "safety_margin_m, max_saturation, max_pitch_rate_deg_s, check_execution, worlds, certify, max_failure_probability, confidence or "
-     "parameters\n16:112: unknown key "
+     "safety_margin_m, collision_checker, max_saturation, max_pitch_rate_deg_s, check_execution, worlds, certify, "
+     "max_failure_probability, "
+     "confidence or parameters\n16:112: unknown key "
      "'max_iteration' "
      "in planner: did you mean 'max_iterations'?"},
     {"aero:\n", "aero: none\naero2:\n", "10:1: unknown key 'aero2' at the top: did you mean 'aero'?"},
@@ -232,8 +233,9 @@ const Edit edits[] = {
      "16:94: planner.parameters.pruning_radius has a meaning only with sst: remove it"},
     {"seed: 1", "seed: 1, <<: 2",
      "16:81: unknown key '<<' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
-     "safety_margin_m, max_saturation, max_pitch_rate_deg_s, check_execution, worlds, certify, max_failure_probability, confidence or "
-     "parameters"},
+     "safety_margin_m, collision_checker, max_saturation, max_pitch_rate_deg_s, check_execution, worlds, certify, "
+     "max_failure_probability, "
+     "confidence or parameters"},
 };
 
 }  // namespace

@@ -200,3 +200,16 @@ TEST_CASE("a goal is met only by a vehicle that stays within its tolerance for t
     problem.goal.hold_s = 4;
     CHECK(flown(problem, quick).outcome == Outcome::ok);
 }
+
+TEST_CASE("FCL decides contact in an executed flight, whatever computes clearances") {
+    // The vehicle's box reaches 0.06 m down. Five nanometres above the ground it is in contact to us, but not to FCL.
+    const auto at_height = [](double z_m) { return PlanarPose{0, 0.06 + z_m, 0, -test::quarter_turn}; };
+    const PlanarPose above = at_height(5e-9), in = at_height(-1e-3), free = at_height(1e-3);
+    const auto model = make_flight_model(test::with_place(2, 2.5));
+    CHECK(model->collisions().clearance_m(above) <= 0);
+    CHECK(model->executed_clearance_m(above) > 0);
+    CHECK(model->executed_clearance_m(above) < 1e-7);
+    CHECK(model->executed_clearance_m(in) <= 0);
+    CHECK(model->executed_clearance_m(free) == model->collisions().clearance_m(free));
+    CHECK(model->executed_clearance_m({0, std::nan(""), 0, 0}) <= 0);
+}
