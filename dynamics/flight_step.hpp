@@ -1,5 +1,6 @@
 #pragma once
 
+#include "downwash/dynamics/arm_wash.hpp"
 #include "downwash/dynamics/integration.hpp"
 #include "downwash/dynamics/rigid_body.hpp"
 #include "downwash/dynamics/rotor_power.hpp"
@@ -72,6 +73,10 @@ void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], 
     if constexpr (Around::has_wind) {
         if (model.has_drag) {
             add_drag(model, a, u, around.wind(), force);
+            if (const Slipstreams& slipstreams = around.slipstreams(); slipstreams.count > 0) {
+                const auto acting_n = [&](int rotor) { return around.thrust_scale(rotor) * thrust_n[rotor]; };
+                add_arm_wash(model, slipstreams, a, u, around.wind(), acting_n, around.wash_scale(), force);
+            }
         }
     }
     around.add_load(q, u, a, force);
