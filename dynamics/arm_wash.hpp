@@ -57,11 +57,10 @@ struct AcrossLoad {
 };
 
 /// What one slipstream changes of the arm's drag. The Gauss rule with twelve points runs over the part of the arm that
-/// may be inside: docs/model.md 2.7 says how exact that is. Not inline: kernels without a wash stay as small as they
-/// are.
+/// may be inside: docs/model.md 2.7 says how exact that is.
 /// @param lateral_m distance of the rotor from the arm's plane, >= 0
 template <class T>
-[[gnu::noinline]] AcrossLoad<T> load_of_slipstream(WashedArm<T> arm, double radius_m, double lateral_m) {
+AcrossLoad<T> load_of_slipstream(const WashedArm<T>& arm, double radius_m, double lateral_m) {
     AcrossLoad<T> load{T(0), T(0)};
     T first_m(0);
     T last_m = arm.length_m;
@@ -111,23 +110,34 @@ template <class T>
     return load;
 }
 
-/// Adds what the slipstreams change of the arm's drag to generalised forces Q [N, N, N m, N m].
-/// @param u speeds [m/s, m/s, rad/s, rad/s]   @param wind velocity of the air [m/s]
-/// @param acting_n (rotor) -> its thrust in free air [N]
-/// @param scale speed of the slipstreams over that of the model
-template <class T, class P, class Thrust>
-void add_arm_wash(const BasicPlantModel<P>& model, const Slipstreams& slipstreams, const Attitude<T>& a, const T u[4],
-                  const PlanePoint<T>& wind, const Thrust& acting_n, T scale, T force[4]) {
+/// A vehicle as its slipstreams need it.
+template <class T>
+struct WashedVehicle {
+    Attitude<T> attitude;
+    T u[4];                  ///< speeds [m/s, m/s, rad/s, rad/s]
+    PlanePoint<T> wind;      ///< velocity of the air [m/s]
+    T acting_n[max_rotors];  ///< thrust of each rotor in free air
+    T scale;                 ///< speed of the slipstreams over that of the model
+};
+
+/// What all slipstreams change of the arm's drag. Neither inline nor with any effect but its value: what flies without
+/// a wash stays as small and as fast as it is.
+template <class T, class P>
+[[gnu::noinline, gnu::pure]] AcrossLoad<T> load_of_slipstreams(const BasicPlantModel<P>& model,
+                                                               const Slipstreams& slipstreams,
+                                                               const WashedVehicle<T>& vehicle) {
     T sum_n[max_rotors + 1];
     for (T& sum : sum_n) {
         sum = T(0);
     }
     for (int i = 0; i < model.rotor_count; ++i) {
         T& sum = sum_n[slipstreams.of_rotor[i]];
-        sum = sum + lane::max(acting_n(i), T(0));
+        sum = sum + lane::max(vehicle.acting_n[i], T(0));
     }
-    const T x_m_s = u[0] - wind.x;
-    const T z_m_s = u[1] - wind.z;
+    const Attitude<T>& a = vehicle.attitude;
+    const T* u = vehicle.u;
+    const T x_m_s = u[0] - vehicle.wind.x;
+    const T z_m_s = u[1] - vehicle.wind.z;
     WashedArm<T> arm;
     arm.along_x = a.arm_x * a.cos_pitch - a.arm_z * a.sin_pitch;
     arm.along_z = a.arm_x * a.sin_pitch + a.arm_z * a.cos_pitch;
@@ -136,22 +146,30 @@ void add_arm_wash(const BasicPlantModel<P>& model, const Slipstreams& slipstream
     arm.drag_n_s2_m2 = T(model.arm_drag_n_s2_m2);
     arm.joint_m_s = (x_m_s + u[2] * a.joint_z) * a.arm_z - (z_m_s - u[2] * a.joint_x) * a.arm_x;
     arm.rate_rad_s = u[2] + u[3];
-    T force_n(0);
-    T moment_nm(0);
+    AcrossLoad<T> all{T(0), T(0)};
     for (int i = 0; i < slipstreams.count; ++i) {
         const int rotor = slipstreams.rotor[i];
         arm.hub_x_m = T(model.rotor_x_m[rotor]) - T(model.joint_x_m);
         arm.hub_z_m = T(model.rotor_z_m[rotor]) - T(model.joint_z_m);
-        arm.disc_m_s = scale * lane::sqrt(T(slipstreams.speed_squared_per_n) * sum_n[i]);
+        arm.disc_m_s = vehicle.scale * lane::sqrt(T(slipstreams.speed_squared_per_n) * sum_n[i]);
         const AcrossLoad<T> load = load_of_slipstream(arm, slipstreams.radius_m, slipstreams.lateral_m[i]);
-        force_n = force_n + load.force_n;
-        moment_nm = moment_nm + load.moment_nm;
+        all.force_n = all.force_n + load.force_n;
+        all.moment_nm = all.moment_nm + load.moment_nm;
     }
+    return all;
+}
+
+/// Adds what the slipstreams change of the arm's drag to generalised forces Q [N, N, N m, N m].
+template <class T, class P>
+void add_arm_wash(const BasicPlantModel<P>& model, const Slipstreams& slipstreams, const WashedVehicle<T>& vehicle,
+                  T force[4]) {
+    const AcrossLoad<T> load = load_of_slipstreams(model, slipstreams, vehicle);
+    const Attitude<T>& a = vehicle.attitude;
     const T lever_m = a.joint_z * a.arm_z + a.joint_x * a.arm_x;
-    force[0] = force[0] + force_n * a.arm_z;
-    force[1] = force[1] - force_n * a.arm_x;
-    force[2] = force[2] + (force_n * lever_m + moment_nm);
-    force[3] = force[3] + moment_nm;
+    force[0] = force[0] + load.force_n * a.arm_z;
+    force[1] = force[1] - load.force_n * a.arm_x;
+    force[2] = force[2] + (load.force_n * lever_m + load.moment_nm);
+    force[3] = force[3] + load.moment_nm;
 }
 
 }  // namespace downwash::dynamics

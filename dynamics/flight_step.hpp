@@ -73,9 +73,15 @@ void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], 
     if constexpr (Around::has_wind) {
         if (model.has_drag) {
             add_drag(model, a, u, around.wind(), force);
-            if (const Slipstreams& slipstreams = around.slipstreams(); slipstreams.count > 0) {
-                const auto acting_n = [&](int rotor) { return around.thrust_scale(rotor) * thrust_n[rotor]; };
-                add_arm_wash(model, slipstreams, a, u, around.wind(), acting_n, around.wash_scale(), force);
+            // Asked with a thrust, so that it is no constant of the loop over the stages: compilers would make a second
+            // loop for flights in a wash, and both would not fit into the instruction cache.
+            if (lane::bits_of(T(around.slipstreams().count) > T(0) * wrench.thrust_n) != 0) [[unlikely]] {
+                // A copy: what the step computes with stays where the compiler wants it.
+                WashedVehicle<T> vehicle{a, {u[0], u[1], u[2], u[3]}, around.wind(), {}, around.wash_scale()};
+                for (int i = 0; i < model.rotor_count; ++i) {
+                    vehicle.acting_n[i] = around.thrust_scale(i) * thrust_n[i];
+                }
+                add_arm_wash(model, around.slipstreams(), vehicle, force);
             }
         }
     }

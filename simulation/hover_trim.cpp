@@ -41,9 +41,9 @@ struct WashLoad {
 
 WashLoad wash_load(const TickModel& model, const Attitude<double>& a, const double (&command_n)[max_rotors]) {
     WashLoad load;
-    const double u[4] = {};
-    dynamics::add_arm_wash<double>(
-        model.plant, model.slipstreams, a, u, {0, 0}, [&](int rotor) { return command_n[rotor]; }, 1, load.force);
+    dynamics::WashedVehicle<double> vehicle{a, {}, {0, 0}, {}, 1};
+    std::copy(command_n, command_n + max_rotors, vehicle.acting_n);
+    dynamics::add_arm_wash(model.plant, model.slipstreams, vehicle, load.force);
     return load;
 }
 

@@ -39,9 +39,10 @@ Load wash_of(const Robot& robot, const double (&q)[4], const double (&u)[4], con
              double scale = 1) {
     const PlantModel plant = plant_of(robot);
     Load load;
-    dynamics::add_arm_wash<double>(
-        plant, slipstreams_of(robot.arm, robot.rotors), dynamics::attitude(plant, q[2], q[3]), u, {0, 0},
-        [&](int rotor) { return thrust_n[static_cast<std::size_t>(rotor)]; }, scale, load.force);
+    dynamics::WashedVehicle<double> vehicle{
+        dynamics::attitude(plant, q[2], q[3]), {u[0], u[1], u[2], u[3]}, {0, 0}, {}, scale};
+    std::copy(thrust_n.begin(), thrust_n.end(), vehicle.acting_n);
+    dynamics::add_arm_wash(plant, slipstreams_of(robot.arm, robot.rotors), vehicle, load.force);
     return load;
 }
 
