@@ -10,7 +10,7 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 # and the random numbers of worlds.
 judge_may='controllers/actuation controllers/aided_law controllers/aids controllers/axes controllers/cascaded_pid
 controllers/configuration controllers/control_law controllers/model_inversion controllers/plan controllers/planar_lyapunov
-controllers/reference_point controllers/reference_segment controllers/rest dynamics/plant dynamics/plant_model
+controllers/reference_point controllers/reference_segment controllers/rest dynamics/plant dynamics/plant_model dynamics/slipstreams
 dynamics/plant_state simulation/contact_goal simulation/flight_model simulation/flight_sums simulation/goal simulation/noise
 simulation/pose simulation/robot simulation/robot_uncertainty simulation/tick_model simulation/uncertainty
 simulation/vehicle_state simulation/world simulation/world_numbers simulation/world_parameters'

@@ -80,6 +80,8 @@ class TouchingSurroundings {
     double thrust_scale(int rotor) const { return around_.thrust_scale(rotor); }
     static constexpr bool has_wind = Around::has_wind;
     PlanePoint<double> wind() const { return around_.wind(); }
+    [[nodiscard]] const Slipstreams& slipstreams() const { return around_.slipstreams(); }
+    double wash_scale() const { return around_.wash_scale(); }
     void add_load(const double q[4], const double u[4], const Attitude<double>& a, double force[4]) const {
         const ContactLoad load = contact_load(model_, contact_, q, u, a);
         for (int i = 0; i < 4; ++i) {

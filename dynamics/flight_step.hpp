@@ -1,5 +1,6 @@
 #pragma once
 
+#include "downwash/dynamics/arm_wash.hpp"
 #include "downwash/dynamics/integration.hpp"
 #include "downwash/dynamics/rigid_body.hpp"
 #include "downwash/dynamics/rotor_power.hpp"
@@ -72,6 +73,16 @@ void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], 
     if constexpr (Around::has_wind) {
         if (model.has_drag) {
             add_drag(model, a, u, around.wind(), force);
+            // Asked with a thrust, so that it is no constant of the loop over the stages: compilers would make a second
+            // loop for flights in a wash, and both would not fit into the instruction cache.
+            if (lane::bits_of(T(around.slipstreams().count) > T(0) * wrench.thrust_n) != 0) [[unlikely]] {
+                // A copy: what the step computes with stays where the compiler wants it.
+                WashedVehicle<T> vehicle{a, {u[0], u[1], u[2], u[3]}, around.wind(), {}, around.wash_scale()};
+                for (int i = 0; i < model.rotor_count; ++i) {
+                    vehicle.acting_n[i] = around.thrust_scale(i) * thrust_n[i];
+                }
+                add_arm_wash(model, around.slipstreams(), vehicle, force);
+            }
         }
     }
     around.add_load(q, u, a, force);

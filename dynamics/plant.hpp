@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "downwash/base/vector3.hpp"
@@ -15,6 +16,13 @@ struct DragParameters {
     double quadratic_n_s2_m2 = 0;  ///< >= 0, rho cd A / 2
     /// Whether there is any.
     [[nodiscard]] bool is_any() const noexcept { return linear_n_s_m > 0 || quadratic_n_s2_m2 > 0; }
+};
+
+/// The rotors' slipstreams on the arm (docs/model.md 2.7). They act through the arm's drag.
+struct WashParameters {
+    double scale = 1;  ///< speed of the slipstreams over that of momentum theory, >= 0
+
+    friend constexpr bool operator==(const WashParameters&, const WashParameters&) = default;
 };
 
 /// The multirotor's rigid body A (thesis C.1).
@@ -36,8 +44,9 @@ struct ArmParameters {
     bool is_limited = false;      ///< without limits the arm turns through 360 degrees
     double lower_limit_rad = 0;   ///< smallest angle relative to the multirotor, when limited
     double upper_limit_rad = 0;
-    double max_torque_nm = 0;  ///< largest torque of the joint, > 0
-    DragParameters drag = {};  ///< drag of the whole arm in a stream across it; one along it has none
+    double max_torque_nm = 0;                 ///< largest torque of the joint, > 0
+    DragParameters drag = {};                 ///< drag of the whole arm in a stream across it; one along it has none
+    std::optional<WashParameters> wash = {};  ///< empty: rotors blow past the arm
 };
 
 /// Rotors that spin in the body's b1-b2 plane. A command is the free-air thrust of one rotor (a PWM level).

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "downwash/judge/slipstream.hpp"
+
 namespace downwash::judge {
 namespace {
 
@@ -43,6 +45,7 @@ Acceleration Plant::acceleration(const Motion& motion, const std::array<double, 
     Loads loads;
     loads.joint_torque_nm = joint_torque_nm;
     double free_air_n = 0;
+    std::array<double, max_rotors> acting_n{};
     const auto push = [&](Planar lever, double force_n) {
         loads.body_force_n = loads.body_force_n + force_n * up;
         loads.body_moment_nm += moment_of(lever, force_n * up);
@@ -52,6 +55,7 @@ Acceleration Plant::acceleration(const Motion& motion, const std::array<double, 
         const Planar lever = from_body(vehicle_.hub_m[k], motion.pitch_rad);
         const double thrust = vehicle_.thrust_of[k] * thrust_n[k];
         free_air_n += thrust;
+        acting_n[k] = thrust;
         push(lever, surroundings_.thrust_ratio(i, motion.position_m + lever, motion.pitch_rad) * thrust);
     }
     const Planar center = from_body(vehicle_.hub_center_m, motion.pitch_rad);
@@ -60,6 +64,7 @@ Acceleration Plant::acceleration(const Motion& motion, const std::array<double, 
     loads.body_force_n = loads.body_force_n + Planar{wall.force_x_n, 0};
     loads.body_moment_nm += wall.moment_nm;
     add_drag(vehicle_, motion, wind_m_s, loads);
+    add_wash(vehicle_, motion, acting_n, wind_m_s, loads);
     const double normal_n = touched_ != nullptr ? touched_->push(vehicle_, motion, loads) : 0;
     if (contact_n != nullptr) {
         *contact_n = normal_n;

@@ -26,11 +26,14 @@ Vehicle vehicle_in(const World& world, const Robot& robot) {
     v.joint_m = Planar{robot.arm.joint_x_m, robot.arm.joint_z_m} - off;
     v.arm_center_of_mass_m = robot.arm.center_of_mass_m;
     v.arm_length_m = robot.arm.length_m;
+    v.wash_scale = robot.arm.wash ? robot.arm.wash->scale * (1 + world.arm_wash_scale) : 0;
+    v.rotor_radius_m = robot.rotors.radius_m;
     v.rotor_count = static_cast<int>(robot.rotors.positions_m.size());
     for (std::size_t i = 0; i < robot.rotors.positions_m.size(); ++i) {
         const Vector3& hub_m = robot.rotors.positions_m[i];
         v.hub_m[i] = Planar{hub_m[0], hub_m[2]} - off;
         v.hub_center_m = v.hub_center_m + (1.0 / v.rotor_count) * v.hub_m[i];
+        v.hub_lateral_m[i] = hub_m[1];
         v.thrust_of[i] = (1 + world.thrust_scale) * (1 + world.rotor_thrust_scale[i]);
     }
     const double lag_s = robot.rotors.time_constant_s;

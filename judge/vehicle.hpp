@@ -43,11 +43,14 @@ struct Vehicle {
 
     int rotor_count;
     std::array<Planar, max_rotors> hub_m;
+    std::array<double, max_rotors> hub_lateral_m;  ///< to the left of the plane of motion
+    double rotor_radius_m;
     Planar hub_center_m;                       ///< mean of the hubs
     std::array<double, max_rotors> thrust_of;  ///< thrust over that of the nominal coefficient
     double rotor_time_constant_s;              ///< 0: no lag
     double power_coefficient_w_n1p5;
     DragParameters body_drag, arm_drag;
+    double wash_scale;  ///< speed of the slipstreams over that of momentum theory; 0: none meets the arm
 
     [[nodiscard]] double mass_kg() const noexcept { return body_mass_kg + arm_mass_kg; }
 };

@@ -16,15 +16,15 @@ namespace downwash::planning {
 namespace {
 
 /// Worlds in which dangers come early (DangerQuantiles); then points spread evenly.
-/// @param number of the world, from 1
-std::vector<double> search_quantiles(std::uint64_t number) {
+/// @param number of the world, from 1   @return quantiles of world_parameters_of(robot)
+std::vector<double> search_quantiles(const Robot& robot, std::uint64_t number) {
     constexpr double DangerQuantiles::*dangers[] = {&DangerQuantiles::strong, &DangerQuantiles::weak,
                                                     &DangerQuantiles::forward, &DangerQuantiles::backward};
-    const std::span<const WorldParameter> parameters = world_parameters();
+    const std::vector<const WorldParameter*> parameters = world_parameters_of(robot);
     std::vector<double> quantiles(parameters.size());
     if (number <= std::size(dangers)) {
         std::ranges::transform(parameters, quantiles.begin(),
-                               [&](const WorldParameter& parameter) { return parameter.danger.*dangers[number - 1]; });
+                               [&](const WorldParameter* parameter) { return parameter->danger.*dangers[number - 1]; });
         return quantiles;
     }
     // Kronecker's sequence with the generalised golden ratio (Roberts 2018).
@@ -62,8 +62,8 @@ std::vector<FlownWorld> search_worlds(const Problem& problem) {
     std::vector<FlownWorld> worlds;
     for (std::uint64_t i = 1; i < problem.planner.worlds; ++i) {
         const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem.planner.seed} ^ simulation::mixed(i));
-        worlds.push_back(
-            make_world(problem.robot, world_at(*problem.uncertainty, problem.robot, search_quantiles(i), tape)));
+        worlds.push_back(make_world(
+            problem.robot, world_at(*problem.uncertainty, problem.robot, search_quantiles(problem.robot, i), tape)));
     }
     return worlds;
 }

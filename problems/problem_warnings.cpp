@@ -211,10 +211,10 @@ std::vector<KeyError> exact_uncertainty(const Problem& problem) {
     if (!problem.uncertainty) {
         return {};
     }
-    const auto is_exact = [&](const WorldParameter& parameter) {
-        return ((*problem.uncertainty).*parameter.spread).form == Spread::Form::exact;
+    const auto is_exact = [&](const WorldParameter* parameter) {
+        return ((*problem.uncertainty).*parameter->spread).form == Spread::Form::exact;
     };
-    if (!std::ranges::all_of(world_parameters(), is_exact)) {
+    if (!std::ranges::all_of(world_parameters_of(problem.robot), is_exact)) {
         return {};
     }
     return {{"uncertainty", "leaves nothing uncertain: all worlds are alike, and a certificate says nothing"}};

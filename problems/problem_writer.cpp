@@ -213,6 +213,9 @@ std::string problem_sha256(const Problem& problem) {
     if (!problem.aero.wall.is_any()) {
         left_out.emplace_back("aero.wall");
     }
+    if (!problem.robot.arm.wash) {
+        left_out.emplace_back("robot.arm.wash");
+    }
     return sha256_hex(Writer(problem, digest, left_out).written());
 }
 

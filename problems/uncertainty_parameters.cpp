@@ -35,7 +35,8 @@ void add_uncertainty_rows(std::vector<Parameter<Problem>>& rows) {
                        .or_none());
     for (const UncertaintyKey& key : uncertainty_keys()) {
         add_uncertainty_row(
-            rows, key, [](auto& p) -> auto& { return uncertainty_of(p); });
+            rows, key, [](auto& p) -> auto& { return uncertainty_of(p); },
+            [](const Problem& problem) -> const Robot& { return problem.robot; });
         if (key.is_of_robot && key.spread != nullptr) {
             rows.back().default_of = "robot.uncertainty";
         }

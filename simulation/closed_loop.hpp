@@ -70,7 +70,8 @@ State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumber
         by.u[1] = by.u[1] - sign * (by.u[2] * x);
     };
     shift(moving, motion.attitude, T(1));
-    const WorldSurroundings<T, Field> around(world, wind_in(world, state.world), field, model.tilt_loss);
+    const WorldSurroundings<T, Field> around(world, wind_in(world, state.world), field, model.tilt_loss,
+                                             model.slipstreams);
     next.plant = integrate(plant, moving, motion, given.command, T(model.tick_s), around);
     shift(next.plant, dynamics::attitude(plant, next.plant.q[2], next.plant.q[3]), T(-1));
     next.world = later(world, state.plant, state.world, noise);

@@ -32,7 +32,7 @@ FlightModel::FlightModel(const Robot& robot, const PlaneOfMotion& plane, std::sh
       scene_(scene),
       tick_{make_plant_model(robot.multirotor, robot.arm, robot.rotors, has_fountain(aero)),
             controllers::flown_law(robot.controller.law), 1 / robot.controller.rate_hz,
-            aero.map ? TiltLoss{} : aero.tilt_loss},
+            aero.map ? TiltLoss{} : aero.tilt_loss, slipstreams_of(robot.arm, robot.rotors)},
       nominal_world_(make_world(robot, {})),
       collisions_(scene, plane, robot.shape(), checker),
       contacts_(checker == CollisionCheckerKind::fcl

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "downwash/controllers/control.hpp"
+#include "downwash/dynamics/arm_wash.hpp"
 #include "downwash/simulation/effect_slope.hpp"
 #include "downwash/simulation/surroundings.hpp"
 
@@ -33,6 +34,19 @@ RotorWrench<double> demand_for(const TickModel& model, const FlightState& at, Li
             (a.thrust_n * wanted.pitch_torque_nm - wanted.thrust_n * a.pitch_torque_nm) / determinant};
 }
 
+/// What the slipstreams do to the arm of a vehicle at rest [N, N, N m, N m].
+struct WashLoad {
+    double force[4] = {};
+};
+
+WashLoad wash_load(const TickModel& model, const Attitude<double>& a, const double (&command_n)[max_rotors]) {
+    WashLoad load;
+    dynamics::WashedVehicle<double> vehicle{a, {}, {0, 0}, {}, 1};
+    std::copy(command_n, command_n + max_rotors, vehicle.acting_n);
+    dynamics::add_arm_wash(model.plant, model.slipstreams, vehicle, load.force);
+    return load;
+}
+
 }  // namespace
 
 void command_rotors_at_rest(const TickModel& model, LinearEffect& effect, const dynamics::PlantState<double>& at,
@@ -57,9 +71,21 @@ HoverTrim hover_trim(const Robot& robot, const TickModel& model, LinearEffect& e
     const EquationsOfMotion<double> e = dynamics::equations_of_motion(plant, a, resting.plant.u);
 
     // The plant's side. Row 1 leaves no other pitch than level; rows 2 to 4 with du = 0 give thrust, torque, joint.
-    const RotorWrench<double> demand = demand_for(model, resting, effect, {e.bias[1], e.bias[2]});
+    RotorWrench<double> demand = demand_for(model, resting, effect, {e.bias[1], e.bias[2]});
     command_rotors_at_rest(model, effect, resting.plant, demand.thrust_n, demand.pitch_torque_nm, trim.rotor_command_n);
     trim.joint_torque_nm = e.bias[3];
+    if (model.slipstreams.count > 0) {
+        // What they push down asks for thrust, which makes them faster: each round adds a few percent of the last one.
+        // Their push along x would take a tilted hover and is left out, like that of walls.
+        constexpr int rounds = 20;
+        for (int i = 0; i < rounds; ++i) {
+            const WashLoad load = wash_load(model, a, trim.rotor_command_n);
+            demand = demand_for(model, resting, effect, {e.bias[1] - load.force[1], e.bias[2] - load.force[2]});
+            command_rotors_at_rest(model, effect, resting.plant, demand.thrust_n, demand.pitch_torque_nm,
+                                   trim.rotor_command_n);
+            trim.joint_torque_nm = e.bias[3] - load.force[3];
+        }
+    }
     for (bool& is_used : trim.feeds_back.plant.q) {
         is_used = true;
     }

@@ -157,11 +157,18 @@ std::vector<KeyError> too_long_delay(const Robot& robot) {
                                        rounded(simulation::max_delay_ticks / robot.controller.rate_hz) + " s"}};
 }
 
+std::vector<KeyError> wash_without_drag(const Robot& robot) {
+    if (!robot.arm.wash || robot.arm.drag.is_any()) {
+        return {};
+    }
+    return {{"arm.wash", "acts through the drag of the arm, and it has none: expected arm.drag as well"}};
+}
+
 std::vector<KeyError> unflyable_uncertainty(const Robot& robot) {
     return robot.uncertainty ? uncertainty_errors(*robot.uncertainty, robot) : std::vector<KeyError>();
 }
 
-const std::array<Check<Robot>, 14> checks{{
+const std::array<Check<Robot>, 15> checks{{
     {{"multirotor.body"}, missing_bodies},
     {{"multirotor.body"}, shapeless_cylinders},
     {{"rotors.positions_m", "rotors.radius_m"}, unusable_rotor_layout},
@@ -176,6 +183,7 @@ const std::array<Check<Robot>, 14> checks{{
     {{"arm.center_of_mass_m", "arm.length_m"}, outlying_center_of_mass},
     {{"arm.limits_deg"}, crossed_arm_limits},
     {{"arm.max_torque_nm", "arm.mass_kg", "arm.center_of_mass_m"}, weak_joint},
+    {{"arm.wash", "arm.drag"}, wash_without_drag},
     {{"uncertainty", "rotors.time_constant_s", "controller"}, unflyable_uncertainty},
 }};
 

@@ -34,6 +34,17 @@ Parameter<Robot> group(std::string_view path, std::string_view description) {
     return parameters::group<Robot>(path, description).is_required();
 }
 
+/// What a part says; the defaults where there is none.
+template <class Part>
+const Part& part_of(const std::optional<Part>& part) {
+    static const Part usual;
+    return part ? *part : usual;
+}
+template <class Part>
+Part& part_of(std::optional<Part>& part) {
+    return part ? *part : part.emplace();
+}
+
 /// The keys of a drag; they may be left out.
 template <class Part>
 void add_drag(Rows& rows, const std::string& of, std::string_view description, Part part) {
@@ -146,6 +157,16 @@ void add_arm(Rows& rows) {
              .between(min_torque_nm, 1e5)
              .is_required()});
     add_drag(rows, "arm", "air drag of the whole arm in a stream across it; none where it is left out", of(&Arm::drag));
+    rows.push_back(parameters::optional_group<Robot>(
+                       "arm.wash",
+                       "slipstreams of the rotors on the arm, which act through its drag; none where it is left out",
+                       of(&Arm::wash))
+                       .or_none());
+    rows.push_back(number("arm.wash.scale", "speed of the slipstreams over that of momentum theory",
+                          in(in(
+                                 of(&Arm::wash), [](auto& wash) -> auto& { return part_of(wash); }),
+                             &WashParameters::scale))
+                       .between(0, 10));
 }
 
 /// Collects the keys that a control law describes.
@@ -254,16 +275,6 @@ class LawRows {
         }
         return both;
     }
-    /// What a part says; the defaults where there is none.
-    template <class Part>
-    static const Part& part_of(const std::optional<Part>& part) {
-        static const Part usual;
-        return part ? *part : usual;
-    }
-    template <class Part>
-    static Part& part_of(std::optional<Part>& part) {
-        return part ? *part : part.emplace();
-    }
     static std::string below(std::string_view path) { return "controller." + std::string(path); }
     static bool is_flown(const Robot& robot, std::size_t /*index*/) {
         return std::holds_alternative<Law>(robot.controller.law);
@@ -355,7 +366,8 @@ void add_uncertainty(Rows& rows) {
     for (const UncertaintyKey& key : uncertainty_keys()) {
         if (key.is_of_robot) {
             add_uncertainty_row(
-                rows, key, [](auto& r) -> auto& { return uncertainty_of(r); });
+                rows, key, [](auto& r) -> auto& { return uncertainty_of(r); },
+                [](const Robot& robot) -> const Robot& { return robot; });
         }
     }
 }

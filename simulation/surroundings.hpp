@@ -41,13 +41,13 @@ class NominalSurroundings : public dynamics::CalmSurroundings<T> {
     const TiltLoss& tilt_loss_;
 };
 
-/// The surroundings of a vehicle in a world: surface effects, rotors, wind.
+/// The surroundings of a vehicle in a world: surface effects, rotors, wind, slipstreams.
 template <class T, EffectField<T> Field>
 class WorldSurroundings : public dynamics::CalmSurroundings<T> {
  public:
     WorldSurroundings(const WorldNumbers<T>& world, const dynamics::PlanePoint<T>& wind, Field& field,
-                      const TiltLoss& tilt_loss)
-        : world_(world), wind_(wind), field_(field), tilt_loss_(tilt_loss) {}
+                      const TiltLoss& tilt_loss, const Slipstreams& slipstreams = no_slipstreams)
+        : world_(world), wind_(wind), field_(field), tilt_loss_(tilt_loss), slipstreams_(slipstreams) {}
 
     T thrust_ratio(int rotor, const dynamics::PlanePoint<T>& hub_m, const T& sin_pitch) const {
         return in_world(field_.at_rotor(rotor, hub_m.x - world_.scene_x_m, hub_m.z - world_.scene_z_m), sin_pitch);
@@ -63,6 +63,8 @@ class WorldSurroundings : public dynamics::CalmSurroundings<T> {
     T thrust_scale(int rotor) const { return world_.rotor_thrust_scale[rotor]; }
     static constexpr bool has_wind = true;
     dynamics::PlanePoint<T> wind() const { return wind_; }
+    [[nodiscard]] const Slipstreams& slipstreams() const { return slipstreams_; }
+    T wash_scale() const { return world_.arm_wash_scale; }
 
  private:
     T in_world(const SidedFactor<T>& level, const T& sin_pitch) const {
@@ -75,6 +77,7 @@ class WorldSurroundings : public dynamics::CalmSurroundings<T> {
     dynamics::PlanePoint<T> wind_;
     Field& field_;
     const TiltLoss& tilt_loss_;
+    const Slipstreams& slipstreams_;
 };
 
 }  // namespace downwash::simulation

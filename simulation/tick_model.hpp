@@ -2,6 +2,7 @@
 
 #include "downwash/controllers/control_law.hpp"
 #include "downwash/dynamics/plant_model.hpp"
+#include "downwash/dynamics/slipstreams.hpp"
 #include "downwash/effects/sided_factor.hpp"
 
 namespace downwash::simulation {
@@ -12,6 +13,7 @@ struct TickModel {
     FlownLaw law;
     double tick_s;  ///< control period, 1 / rate_hz
     TiltLoss tilt_loss = {};
+    Slipstreams slipstreams = {};  ///< on the arm, in the nominal world and in others
 };
 
 }  // namespace downwash::simulation

@@ -21,6 +21,7 @@ struct Uncertainty {
     Spread center_of_mass_z_m = Spread::of_sd(0.005);
     Spread thrust_scale = Spread::of_sd(0.03);
     Spread rotor_thrust_scale = Spread::of_sd(0.01);             ///< Each rotor draws a number of its own.
+    Spread arm_wash_scale = Spread::of_sd(0.15);                 ///< Of a robot whose arm is in the wash.
     Spread rotor_time_constant_s = Spread::of_factor(0.7, 1.5);  ///< A range is one of the time constant itself.
     Spread delay_s = Spread::of_factor(0.5, 1.5);                ///< A range is one of the delay itself.
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "downwash/base/parameter_factories.hpp"
@@ -10,8 +11,10 @@ namespace downwash {
 
 /// Adds a key below `uncertainty` to the table of a Model that has an Uncertainty.
 /// @param key without a spread: the group itself   @param uncertainty gives that of a model: (auto& model) -> auto&
-template <class Model, class Member>
-void add_uncertainty_row(std::vector<Parameter<Model>>& rows, const UncertaintyKey& key, Member uncertainty) {
+/// @param robot_of gives the robot of a model
+template <class Model, class Member, class RobotOf>
+void add_uncertainty_row(std::vector<Parameter<Model>>& rows, const UncertaintyKey& key, Member uncertainty,
+                         RobotOf robot_of) {
     const std::string path = "uncertainty." + std::string(key.path);
     if (key.spread == nullptr) {
         rows.push_back(parameters::group<Model>(path, key.description));
@@ -22,6 +25,11 @@ void add_uncertainty_row(std::vector<Parameter<Model>>& rows, const UncertaintyK
     };
     rows.push_back(
         parameters::spread<Model>(path, key.description, key.forms, spread).at_least(key.low).at_most(key.high));
+    if (key.is_in_effect != nullptr) {
+        rows.back() = std::move(rows.back()).only(key.condition, [key, robot_of](const Model& model, std::size_t) {
+            return key.is_in_effect(robot_of(model));
+        });
+    }
 }
 
 }  // namespace downwash

@@ -67,6 +67,7 @@ FlownWorld make_world(const Robot& robot, const World& world) {
     for (int i = 0; i < max_rotors; ++i) {
         numbers.rotor_thrust_scale[i] = (1 + world.thrust_scale) * (1 + world.rotor_thrust_scale[i]);
     }
+    numbers.arm_wash_scale = 1 + world.arm_wash_scale;
     numbers.ground_scale = world.ground_scale;
     numbers.ceiling_scale = world.ceiling_scale;
     numbers.scene_x_m = world.scene_x_m;

@@ -23,6 +23,7 @@ struct World {
     double center_of_mass_z_m = 0;
     double thrust_scale = 0;                     ///< Relative change of the thrust of all rotors.
     double rotor_thrust_scale[max_rotors] = {};  ///< Relative change of the thrust of each rotor.
+    double arm_wash_scale = 0;                   ///< Relative change of the slipstreams' speed at the arm.
     double rotor_time_constant_s = 0;            ///< Added to that of the robot.
     double delay_s = 0;                          ///< Added to that of the robot.
     double position_bias_x_m = 0;                ///< Constant error of the position that the controller sees.

@@ -34,6 +34,7 @@ struct WorldNumbers {
     T rotor_thrust_scale[max_rotors];          ///< thrust coefficient over the nominal one
     T ground_scale, ceiling_scale;             ///< relative changes of K - 1
     T scene_x_m, scene_z_m;                    ///< displacement of all surfaces
+    T arm_wash_scale;                          ///< speed of the slipstreams over that of the model
     T delay_ticks;                             ///< age of what the controller sees, 0 to max_delay_ticks
     T position_bias_m[2], pitch_bias_rad;      ///< constant errors of what it sees
     T position_noise_m, velocity_noise_m_s, gyro_noise_rad_s;  ///< standard deviations, of every tick

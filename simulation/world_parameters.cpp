@@ -52,9 +52,15 @@ struct Tables {
         keys.push_back({path, description, is_of_robot, spread, {"sd", "range", "factor"}, 0, most, nominal});
         parameters.push_back({std::string(path), spread, nominal, drawn.value, 0, drawn.danger});
     }
+    /// A difference of what only some robots have.
+    void of_some(std::string_view path, std::string_view description, double most, Spread U::*spread,
+                 std::string_view condition, bool (*is_in_effect)(const Robot&)) {
+        keys.push_back(
+            {path, description, is_of_robot, spread, {"sd", "range"}, -most, most, nullptr, is_in_effect, condition});
+    }
     /// What is drawn anew in every tick.
     void noise(std::string_view path, std::string_view description, double most, Spread U::*spread, double W::*sd) {
-        keys.push_back({path, description, is_of_robot, spread, {"sd"}, 0, most, nullptr, sd});
+        keys.push_back({path, description, is_of_robot, spread, {"sd"}, 0, most, nullptr, nullptr, {}, sd});
     }
 };
 
@@ -93,6 +99,9 @@ Tables made_tables() {
     t.of_robot("vehicle.delay_s", "age of what the controller sees; sd around the robot's, range in s", 0.3,
                &U::delay_s, [](const Robot& robot) { return robot.controller.delay_s; },
                {"", &W::delay_s, {.strong = far}});
+    const auto is_washed = [](const Robot& robot) { return robot.arm.wash.has_value(); };
+    t.of_some("vehicle.arm_wash_scale", "relative change of the speed of the slipstreams at the arm", 0.9,
+              &U::arm_wash_scale, "where the robot has arm.wash", is_washed);
     t.group("sensing", "what the controller sees instead of the state");
     t.difference("sensing.position_bias_m", "constant error, along x and along z", 10, &U::position_bias_m,
                  {{" x", &W::position_bias_x_m, {.forward = far, .backward = 1 - far}},
@@ -112,6 +121,10 @@ Tables made_tables() {
                  {{"", &W::wind_x_m_s, {.forward = far, .backward = 1 - far}}});
     t.difference("wind.steady_m_s.z", "upwards [m/s]", 30, &U::wind_z_m_s, {{"", &W::wind_z_m_s, {0.9, 0.1}}});
     t.noise("wind.gust_m_s", "Dryden gusts along x and z", 30, &U::gust_m_s, &W::gust_m_s);
+
+    // Drawn last: worlds are otherwise those of the same robot without a wash.
+    t.parameters.push_back(
+        {"vehicle.arm_wash_scale", &U::arm_wash_scale, nullptr, &W::arm_wash_scale, 0, {}, is_washed});
     return t;
 }
 
@@ -141,12 +154,22 @@ std::span<const WorldParameter> world_parameters() {
     return tables().parameters;
 }
 
+std::vector<const WorldParameter*> world_parameters_of(const Robot& robot) {
+    std::vector<const WorldParameter*> all;
+    for (const WorldParameter& parameter : world_parameters()) {
+        if (parameter.matters_to(robot)) {
+            all.push_back(&parameter);
+        }
+    }
+    return all;
+}
+
 World world_at(const Uncertainty& uncertainty, const Robot& robot, std::span<const double> quantiles,
                std::uint64_t tape) {
     World world;
-    const std::span<const WorldParameter> parameters = world_parameters();
+    const std::vector<const WorldParameter*> parameters = world_parameters_of(robot);
     for (std::size_t i = 0; i < parameters.size(); ++i) {
-        parameters[i].put(world, uncertainty, robot, quantiles[i]);
+        parameters[i]->put(world, uncertainty, robot, quantiles[i]);
     }
     for (const UncertaintyKey& key : uncertainty_keys()) {
         if (key.noise != nullptr) {
@@ -164,7 +187,7 @@ World draw_world(const Uncertainty& uncertainty, const Robot& robot, std::uint64
         return {};
     }
     const std::uint64_t tape = simulation::mixed(simulation::mixed(seed) ^ index);
-    std::vector<double> quantiles(world_parameters().size());
+    std::vector<double> quantiles(world_parameters_of(robot).size());
     std::uint64_t bits = tape;
     for (double& quantile : quantiles) {
         bits = simulation::mixed(bits);

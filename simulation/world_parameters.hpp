@@ -35,7 +35,11 @@ struct WorldParameter {
     double World::*value = nullptr;  ///< nullptr: World::rotor_thrust_scale[rotor]
     int rotor = 0;
     DangerQuantiles danger = {};
+    bool (*is_in_effect)(const Robot&) = nullptr;  ///< nullptr: it matters to every robot
 
+    [[nodiscard]] bool matters_to(const Robot& robot) const noexcept {
+        return is_in_effect == nullptr || is_in_effect(robot);
+    }
     /// The parameter's value in a world.
     [[nodiscard]] double of(const World& world) const noexcept {
         return value != nullptr ? world.*value : world.rotor_thrust_scale[rotor];
@@ -54,6 +58,9 @@ struct UncertaintyKey {
     std::vector<std::string_view> forms = {};
     double low = 0, high = 0;                   ///< Least and greatest number in the spread.
     double (*nominal)(const Robot&) = nullptr;  ///< See WorldParameter::nominal.
+    /// Whether the robot has what is uncertain, and in words; nullptr: every robot has.
+    bool (*is_in_effect)(const Robot&) = nullptr;
+    std::string_view condition = {};
     double World::*noise = nullptr;  ///< Where worlds keep the sd of a number that is drawn anew in every tick.
 };
 
@@ -63,8 +70,12 @@ struct UncertaintyKey {
 /// Every number that worlds draw, in the order of the draws; those of rotors that a robot does not have change nothing.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const WorldParameter> world_parameters();
 
-/// The world in which each parameter is at a quantile of its spread, in the order of world_parameters().
-/// @param quantiles from 0 to 1   @param tape which noise and which gusts
+/// Those that matter to a robot, in the same order: only they are drawn, so that what other robots may have changes no
+/// world of this one.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<const WorldParameter*> world_parameters_of(const Robot& robot);
+
+/// The world in which each parameter is at a quantile of its spread.
+/// @param quantiles from 0 to 1, in the order of world_parameters_of(robot)   @param tape which noise and which gusts
 [[nodiscard]] DOWNWASH_EXPORT World world_at(const Uncertainty& uncertainty, const Robot& robot,
                                              std::span<const double> quantiles, std::uint64_t tape);
 

@@ -44,10 +44,10 @@ py::dict drawn_worlds(const CoreProblem& of, std::uint64_t count, const std::opt
     std::vector<const WorldParameter*> parameters;
     NumberTable table;
     table.names.emplace_back("world");
-    for (const WorldParameter& each : world_parameters()) {
-        if (each.value != nullptr || each.rotor < of.model()->tick().plant.rotor_count) {
-            parameters.push_back(&each);
-            table.names.emplace_back(each.name);
+    for (const WorldParameter* each : world_parameters_of(problem.robot)) {
+        if (each->value != nullptr || each->rotor < of.model()->tick().plant.rotor_count) {
+            parameters.push_back(each);
+            table.names.emplace_back(each->name);
         }
     }
     table.columns.resize(table.names.size());

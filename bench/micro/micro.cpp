@@ -119,6 +119,7 @@ enum class Model : std::uint8_t { dynamics, aerodynamics, worlds };
 struct Flown {
     const char* name;
     bool is_cascaded, observes, reads;
+    bool is_in_wash = false;  ///< its arm turns below its front and its rear rotor, and feels them
 };
 constexpr Flown laws[] = {{"of_the_file", false, false, false},
                           {"observer", false, true, false},
@@ -128,6 +129,8 @@ constexpr Flown laws[] = {{"of_the_file", false, false, false},
                           {"cascaded_observer", true, true, false},
                           {"cascaded_feed_forward", true, false, true},
                           {"cascaded_both", true, true, true}};
+
+constexpr Flown in_wash{"in_the_wash", false, false, false, true};
 
 /// The vehicle with such a law.
 std::shared_ptr<const FlightModel> model_with(const Flown& flown) {
@@ -147,6 +150,10 @@ std::shared_ptr<const FlightModel> model_with(const Flown& flown) {
             }
         },
         problem.robot.controller.law);
+    if (flown.is_in_wash) {
+        problem.robot.rotors.positions_m = {{0.45, 0, 0.06}, {-0.45, 0, 0.06}, {0, 0.45, 0.06}, {0, -0.45, 0.06}};
+        problem.robot.arm.wash.emplace();
+    }
     return make_flight_model(problem);
 }
 
@@ -204,6 +211,8 @@ void batch(benchmark::State& state, Model model, Instructions instructions, int 
                                      2, laws[0])
             ->UseRealTime();
     }
+    benchmark::RegisterBenchmark("batch/dynamics_aware_in_the_wash", batch, Model::dynamics, best_instructions(), 1,
+                                 in_wash);
     for (const Flown& flown : laws) {
         benchmark::RegisterBenchmark((std::string("law/") + flown.name).c_str(), batch, Model::aerodynamics,
                                      best_instructions(), 1, flown);

@@ -2,10 +2,11 @@
 #include <cmath>
 
 #include "../support/random.hpp"
-#include "../support/test_robot.hpp"
+#include "../support/washed_robot.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 #include "downwash/judge/plant.hpp"
 #include "downwash/judge/reference.hpp"
+#include "downwash/judge/slipstream.hpp"
 #include "downwash/simulation/world.hpp"
 
 // The judge's plant in Newton's and Euler's equations of two bodies, against the planner's in generalised coordinates.
@@ -78,6 +79,68 @@ TEST_CASE("Two bodies and a joint accelerate like the generalised coordinates") 
         ++compared;
     }
     CHECK(compared > 300);
+}
+
+TEST_CASE("The judge's slipstream moves as fast as the planner's") {
+    Random random(21);
+    for (int n = 0; n < 2000; ++n) {
+        const double depth = random.uniform(-0.6, 14);
+        const double away = random.uniform(0, 4);
+        CHECK(judge::slipstream_ratio(0.2, 0.2 * depth, 0.2 * away) ==
+              Approx(dynamics::slipstream_speed(depth, away * away)).epsilon(1e-3).margin(1e-3));
+    }
+}
+
+TEST_CASE("Two bodies and a joint accelerate in the wash like the generalised coordinates") {
+    Robot robot = washed_robot();
+    robot.arm.joint_x_m = 0.05;
+    robot.arm.joint_z_m = -0.07;
+    robot.arm.wash->scale = 1.1;
+    World world;
+    world.arm_wash_scale = -0.2;
+    world.center_of_mass_x_m = 0.01;
+    const judge::Vehicle vehicle = judge::vehicle_in(world, robot);
+    const judge::Surroundings free_air(nullptr, calm);
+    const judge::Plant plant(vehicle, free_air);
+    const FlownWorld flown = make_world(robot, world);
+    PlantModel model = plant_of(robot);
+    static_cast<PlantNumbers<double>&>(model) = flown.numbers.plant;
+    struct Washed : Air {
+        Washed(const dynamics::PlanePoint<double>& wind, const Slipstreams& of) : Air(wind), all(of) {}
+        const Slipstreams& all;
+        [[nodiscard]] const Slipstreams& slipstreams() const { return all; }
+        [[nodiscard]] double wash_scale() const { return 0.8; }
+    };
+    const Slipstreams slipstreams = slipstreams_of(robot.arm, robot.rotors);
+    Random random(22);
+    double worst[4] = {}, largest[4] = {};
+    for (int n = 0; n < 400; ++n) {
+        judge::Motion m = random_motion(random);
+        m.velocity_m_s = 0.3 * m.velocity_m_s;
+        m.pitch_rate_rad_s *= 0.1;
+        m.arm_rate_rad_s *= 0.2;
+        const double q[] = {m.position_m.x, m.position_m.z, m.pitch_rad, m.arm_rad};
+        const double u[] = {m.velocity_m_s.x, m.velocity_m_s.z, m.pitch_rate_rad_s, m.arm_rate_rad_s};
+        std::array<double, max_rotors> thrust_n{};
+        for (std::size_t i = 0; i < 4; ++i) {
+            thrust_n[i] = random.uniform(8, 16);
+        }
+        double du[4], calm_du[4];
+        const auto motion = dynamics::motion_at(model, q, u);
+        dynamics::accelerations(model, q, u, motion, thrust_n.data(), 0.0, Washed({0.2, 0.1}, slipstreams), du);
+        dynamics::accelerations(model, q, u, motion, thrust_n.data(), 0.0, Air({0.2, 0.1}), calm_du);
+        const judge::Acceleration a = plant.acceleration(m, thrust_n, 0, {0.2, 0.1});
+        const double mine[] = {a.position_m_s2.x, a.position_m_s2.z, a.pitch_rad_s2, a.arm_rad_s2};
+        for (int i = 0; i < 4; ++i) {
+            worst[i] = std::max(worst[i], std::abs(mine[i] - du[i]));
+            largest[i] = std::max(largest[i], std::abs(du[i] - calm_du[i]));
+        }
+    }
+    for (int i = 0; i < 4; ++i) {
+        CAPTURE(i);
+        CHECK(worst[i] < 0.05 * largest[i]);  // the planner's twelve points
+        CHECK(largest[i] > 0.05);
+    }
 }
 
 TEST_CASE("Energy goes where work and drag put it") {

@@ -224,6 +224,28 @@ TEST_CASE("Walls push and turn the vehicle in a world as the planner says") {
     CHECK(std::abs(without.energy_j - beside.energy_j) > 1e-5 * without.energy_j);  // or nothing was compared
 }
 
+TEST_CASE("An arm in the wash of its rotors flies as the planner says, in worlds too") {
+    Problem problem = shipped("bridge_inspection");
+    problem.robot.rotors.positions_m = {{0.45, 0, 0.06}, {-0.45, 0, 0.06}, {0, 0.45, 0.06}, {0, -0.45, 0.06}};
+    problem.robot.arm.wash.emplace();
+    const Plan plan = plan_of(problem, 100);
+    problem.uncertainty.emplace();
+    const judge::PlanJudge judge(problem);
+    const judge::JudgedFlight washed = judge.fly(plan, {true, std::nullopt});
+    compare(washed, *executed(problem, plan, true, std::nullopt));
+    for (std::uint64_t index = 1; index < 4; ++index) {
+        CAPTURE(index);
+        const World world = draw_world(*problem.uncertainty, problem.robot, 1, index);
+        REQUIRE(world.arm_wash_scale != 0);
+        const auto theirs = executed(problem, plan, true, world);
+        REQUIRE(theirs);
+        compare(judge.fly(plan, {true, world}), *theirs);
+    }
+    problem.robot.arm.wash.reset();
+    const judge::JudgedFlight without = judge::PlanJudge(problem).fly(plan, {true, std::nullopt});
+    CHECK(without.energy_j < 0.995 * washed.energy_j);  // or nothing was compared
+}
+
 TEST_CASE("Other control laws fly as the planner says, with an observer, with a feed-forward and in worlds") {
     CascadedPid cascade;
     cascade.rotor_lead = 1;

@@ -54,6 +54,10 @@ const Edit edits[] = {
      "13:55: arm.center_of_mass_m is 1.3: expected at most the arm's length, 1.2 m"},
     {"max_torque_nm: 12", "max_torque_nm: 3",
      "13:112: arm.max_torque_nm is 3, too little to hold the arm level: expected at least 3.089 Nm"},
+    {"max_torque_nm: 12", "max_torque_nm: 12, wash: {scale: 1}",
+     "13:116: arm.wash acts through the drag of the arm, and it has none: expected arm.drag as well"},
+    {"max_torque_nm: 12", "max_torque_nm: 12, drag: {linear_n_s_m: 1}, wash: {scale: -1}",
+     "13:155: arm.wash.scale is -1: expected a number from 0 to 10"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: [90, -90]",
      "13:128: arm.limits_deg is [lower, upper]: expected the lower limit below the upper one, or both the same"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: 90",
@@ -96,7 +100,8 @@ const Edit edits[] = {
      "21:3: unknown key 'wind' in uncertainty: it belongs in the problem file, as uncertainty.wind"},
     {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {vehicle: {weight: 0}, weather: 0}",
      "19:25: unknown key 'weight' in uncertainty.vehicle: expected mass_scale, inertia_scale, arm_mass_scale, "
-     "com_offset_m, thrust_scale, rotor_thrust_scale, rotor_time_constant_s or delay_s\n19:37: unknown key 'weather' "
+     "com_offset_m, thrust_scale, rotor_thrust_scale, rotor_time_constant_s, delay_s or "
+     "arm_wash_scale\n19:37: unknown key 'weather' "
      "in uncertainty: expected vehicle or sensing"},
     {"max_tilt_deg: 35", "max_tilt_deg: 35\nplanner: {seed: 1}",
      "19:1: unknown key 'planner' at the top: it belongs in the problem file, as planner"},

@@ -89,6 +89,23 @@ TEST_CASE("the shipped robot states the defaults of its uncertainty to the last 
     CHECK(robot.uncertainty.value() == Uncertainty{});
 }
 
+TEST_CASE("a robot without the key has no wash, nor one that says none, and only with a wash it may be uncertain") {
+    const TestFolder folder;
+    const auto wash_of = [&](const std::string& arm_keys, const std::string& further) {
+        const std::string robot = edited(good_robot, "max_torque_nm: 12", "max_torque_nm: 12" + arm_keys) + further;
+        return folder.read(good_problem, robot).robot.arm.wash;
+    };
+    const std::string drag = ", drag: {quadratic_n_s2_m2: 0.05}";
+    CHECK_FALSE(wash_of("", ""));
+    CHECK_FALSE(wash_of(", wash: none", ""));
+    CHECK(wash_of(drag + ", wash: {}", "").value().scale == 1);
+    CHECK(wash_of(drag + ", wash: {scale: 0.8}", "").value().scale == 0.8);
+    const std::string uncertain = "uncertainty: {vehicle: {arm_wash_scale: {sd: 0.2}}}\n";
+    CHECK(wash_of(drag + ", wash: {scale: 1}", uncertain));
+    CHECK_THROWS_WITH(wash_of(drag, uncertain), Catch::Contains("arm_wash_scale has a meaning only where the robot has "
+                                                                "arm.wash: remove it"));
+}
+
 TEST_CASE("keys are read by their former names, which are reported") {
     const TestFolder folder;
     folder.write("problem.yaml", good_problem);

@@ -231,6 +231,10 @@ TEST_CASE("the hash of a problem forgets walls that do nothing, and no others") 
     problem.aero.wall.decay_radii = 2;
     CHECK(problem_sha256(problem) == nothing);
     problem.aero.wall.moment = 0.03;
+    REQUIRE_FALSE(problem.robot.arm.wash);
+    Problem in_wash = problem;
+    in_wash.robot.arm.wash.emplace();
+    CHECK(problem_sha256(in_wash) != nothing);
     const std::string with_walls = problem_sha256(problem);
     CHECK(with_walls != nothing);
     problem.aero.wall.decay_radii = 1;

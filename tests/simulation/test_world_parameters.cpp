@@ -1,8 +1,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <set>
 
-#include "../support/test_robot.hpp"
+#include "../support/washed_robot.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
 // The table of what worlds draw.
@@ -63,4 +64,25 @@ TEST_CASE("worlds differ in what they draw, noise and gusts have one size in all
     const World nominal = draw_world(Uncertainty{}, late_robot(), 1, 0);
     CHECK(std::ranges::all_of(world_parameters(), [&](const WorldParameter& each) { return each.of(nominal) == 0; }));
     CHECK(nominal.gust_m_s == 0);
+}
+
+TEST_CASE("only a robot with a wash draws how fast it is, and all else of its worlds is as without one") {
+    Robot washed = late_robot();
+    washed.arm.drag = {0, 0.05};
+    washed.arm.wash.emplace();
+    CHECK(world_parameters_of(washed).size() == world_parameters().size());
+    CHECK(world_parameters_of(late_robot()).size() + 1 == world_parameters().size());
+    double sum = 0;
+    for (std::uint64_t index = 1; index <= 20; ++index) {
+        const World with = draw_world(Uncertainty{}, washed, 1, index);
+        const World without = draw_world(Uncertainty{}, late_robot(), 1, index);
+        CHECK(without.arm_wash_scale == 0);
+        CHECK(with.arm_wash_scale != 0);
+        CHECK(with.tape == without.tape);
+        for (const WorldParameter* each : world_parameters_of(late_robot())) {
+            CHECK(each->of(with) == each->of(without));
+        }
+        sum += std::abs(with.arm_wash_scale);
+    }
+    CHECK(sum / 20 == Approx(0.12).margin(0.05));  // of a normal number with the sd 0.15
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "../support/same_bytes.hpp"
+#include "../support/washed_robot.hpp"
 #include "downwash/dynamics/rigid_body.hpp"
 #include "downwash/simulation/direct_field.hpp"
 #include "downwash/simulation/flight_loop.hpp"
@@ -36,6 +37,7 @@ World random_world(Random& random) {
     for (double& scale : world.rotor_thrust_scale) {
         scale = random.uniform(-0.02, 0.02);
     }
+    world.arm_wash_scale = random.uniform(-0.3, 0.3);
     world.rotor_time_constant_s = random.uniform(-0.005, 0.01);
     world.delay_s = random.uniform(0, 0.01);
     world.position_bias_x_m = random.uniform(-0.02, 0.02);
@@ -60,6 +62,14 @@ Robot real_robot() {
     robot.controller.delay_s = 0.01;
     robot.multirotor.drag = {1.5, 0.04};
     robot.arm.drag = {0, 0.05};
+    return robot;
+}
+
+/// The same with an arm below its rotors.
+Robot late_in_wash() {
+    Robot robot = washed_robot();
+    robot.rotors.time_constant_s = 0.02;
+    robot.controller.delay_s = 0.01;
     return robot;
 }
 
@@ -131,7 +141,7 @@ TEST_CASE("The world without any difference is the nominal one, to the last bit"
 
 TEST_CASE("Flights in worlds side by side are those of each alone, to the last bit, on any instructions and threads") {
     const bool is_aware = GENERATE(true, false);
-    const Problem problem = problem_with(real_robot());
+    const Problem problem = problem_with(GENERATE(real_robot(), late_in_wash()));
     const auto model = make_flight_model(problem);
     const auto map = is_aware ? model->make_map(problem.bounds) : nullptr;
     Random random(3);
