@@ -77,7 +77,7 @@ Problem with_weak_joint(Problem problem) {
 }  // namespace
 
 TEST_CASE("every planner key changes something with every algorithm, or is refused") {
-    for (const Variant variant : all_variants) {
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_ada}) {  // which have all algorithms
         for (const AlgorithmInfo& algorithm : algorithms()) {
             if (!algorithm.plans_for(variant)) {
                 continue;
