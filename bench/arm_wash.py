@@ -88,7 +88,8 @@ def print_plans(options, folder):
     """The table of plans."""
     print("## Plans\n")
     print("Plans that were made without the wash, flown without and with it; and plans that were made with it. Energy is the "
-          "median\nover seeds, in the nominal world. Failures are of all plans with a flight, certified or not.\n")
+          "median\nover seeds, in the nominal world. Failures are of all plans with a flight, certified or not. A search with a wash has "
+          "other worlds,\nspread evenly over one number more: its plans are others even where no slipstream meets the arm.\n")
     print("| robot | problem | made without: certified | energy kJ | with wash kJ | failed in worlds | with wash | "
           "made with: certified | energy kJ | failed in worlds |")
     print("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |")
