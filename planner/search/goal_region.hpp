@@ -3,7 +3,8 @@
 #include <optional>
 
 #include "downwash/search/random.hpp"
-#include "downwash/search/search_space.hpp"
+#include "downwash/search/search_task.hpp"
+#include "downwash/simulation/execution.hpp"
 
 namespace downwash::planning {
 
@@ -27,17 +28,17 @@ class GoalRegion {
     /// Whether a flight to a configuration may well meet the goal.
     [[nodiscard]] virtual bool contains(const Configuration& configuration) const = 0;
 
-    /// Whether the rules of flights judge the hover, by the problem's goal; if not, is_met() does, at its end.
+    /// Whether it is the problem's: then the rules of flights judge the whole hover; otherwise is_met() does, at its end.
     [[nodiscard]] virtual bool is_of_problem() const noexcept = 0;
-    /// Whether a vehicle that hovers has met the goal. @pre !is_of_problem()
+    /// Whether a vehicle meets the goal now: in the region, and slow.
     [[nodiscard]] virtual bool is_met(const FlightState& vehicle) const = 0;
 };
 
 /// The goal of a problem.
 class ProblemGoal final : public GoalRegion {
  public:
-    /// @param space must outlive it
-    explicit ProblemGoal(const SearchSpace& space) : space_(space) {}
+    /// @param task must outlive it
+    explicit ProblemGoal(const SearchTask& task) : task_(task), space_(task.space) {}
 
     [[nodiscard]] std::optional<Configuration> sample(Random& random) const override {
         return space_.sample_goal(random);
@@ -56,9 +57,12 @@ class ProblemGoal final : public GoalRegion {
         return space_.is_near_goal(configuration);
     }
     [[nodiscard]] bool is_of_problem() const noexcept override { return true; }
-    [[nodiscard]] bool is_met(const FlightState&) const override { return true; }
+    [[nodiscard]] bool is_met(const FlightState& vehicle) const override {
+        return meets_goal(task_.problem.goal, task_.model.tick().plant, vehicle);
+    }
 
  private:
+    const SearchTask& task_;
     const SearchSpace& space_;
 };
 

@@ -49,7 +49,6 @@ class OmplGoal final : public GoalRegion {
     [[nodiscard]] double distance_m(const Configuration& configuration) const override;
     [[nodiscard]] bool contains(const Configuration& configuration) const override;
     [[nodiscard]] bool is_of_problem() const noexcept override { return false; }
-    /// Whether the vehicle is in the region, and slow.
     [[nodiscard]] bool is_met(const FlightState& vehicle) const override;
 
  private:

@@ -89,7 +89,7 @@ FlightStatistics& FlightStatistics::operator+=(const FlightStatistics& other) {
 
 PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_over, int threads)
     : task_(task),
-      goal_(task.space),
+      goal_(task),
       objective_(task),
       limits_(task.problem.motion),
       tick_s_(task.model.tick().tick_s),
@@ -312,7 +312,7 @@ bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights&
     const FlightPoint& arrival = moments[moments.size() - 2];
     const FlightLeg hover = flights.hold_leg(arrival.reference);
     return is_at_rest(end.reference) && end.reference == arrival.reference &&
-           end.ticks - arrival.ticks == hover.segment.ticks() && flights.is_met(end.vehicle);
+           end.ticks - arrival.ticks == hover.segment.ticks() && flights.goal().is_met(end.vehicle);
 }
 
 void PlannedFlights::fly_again(FleetJob& fleet) const {
@@ -352,11 +352,6 @@ FlightLeg PlannedFlights::hold_leg(const ReferencePoint& at) const {
 
 std::int64_t PlannedFlights::judged_ticks() const {
     return std::llround(goal_settling_s / tick_s_);
-}
-
-bool PlannedFlights::is_met(const FlightState& vehicle) const {
-    return goal().is_of_problem() ? meets_goal(task_.problem.goal, task_.model.tick().plant, vehicle)
-                                  : goal().is_met(vehicle);
 }
 
 double PlannedFlights::cost_after(double cost_before, const Fleet& from, const FleetJob& job, std::size_t leg) const {

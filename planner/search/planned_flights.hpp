@@ -92,9 +92,6 @@ class PlannedFlights {
     [[nodiscard]] FlightLeg hold_leg(const ReferencePoint& at) const;
     [[nodiscard]] std::int64_t judged_ticks() const;
 
-    /// Whether a vehicle at the end of a hold has met the goal.
-    [[nodiscard]] bool is_met(const FlightState& vehicle) const;
-
     /// The cost from the start up to the end of a leg that began with `from`.
     [[nodiscard]] double cost_after(double cost_before, const FlightState& from, const FlightLeg& leg) const {
         return cost_before + objective().of_leg(from, leg);
