@@ -17,8 +17,8 @@ namespace ob = ompl::base;
 using RealVector = ob::RealVectorStateSpace::StateType;
 using Turn = ob::SO2StateSpace::StateType;
 
-/// The translations as one space, then one for each joint: a circle, or an interval where it has limits. Distances are
-/// those of SearchSpace, the root of weighted squares. An angle on a circle may be given in any turn.
+/// The translations as one space, then one for each joint that moves: a circle, or an interval where it has limits.
+/// Distances are those of SearchSpace, the root of weighted squares. An angle on a circle may be given in any turn.
 class ConfigurationSpace : public ob::CompoundStateSpace {
  public:
     explicit ConfigurationSpace(const SearchSpace& space) : search_(space) {
@@ -29,7 +29,7 @@ class ConfigurationSpace : public ob::CompoundStateSpace {
                 position->addDimension(axis.low, axis.high);
             } else if (axis.wraps) {
                 addSubspace(std::make_shared<ob::SO2StateSpace>(), axis.weight_m);
-            } else {
+            } else if (!axis.is_fixed()) {
                 const auto joint = std::make_shared<ob::RealVectorStateSpace>(1);
                 joint->setBounds(axis.low, axis.high);
                 addSubspace(joint, axis.weight_m);
@@ -189,7 +189,7 @@ void write(const Configuration& c, ob::State* state, const SearchSpace& space) {
             compound->as<RealVector>(0)->values[translation++] = c[i];
         } else if (axis.wraps) {
             compound->as<Turn>(joint++)->value = c[i];
-        } else {
+        } else if (!axis.is_fixed()) {
             compound->as<RealVector>(joint++)->values[0] = c[i];
         }
     }
@@ -205,6 +205,8 @@ Configuration read(const ob::State* state, const SearchSpace& space) {
             c[i] = compound->as<RealVector>(0)->values[translation++];
         } else if (axis.wraps) {
             c[i] = compound->as<Turn>(joint++)->value;
+        } else if (axis.is_fixed()) {
+            c[i] = axis.low;
         } else {
             c[i] = compound->as<RealVector>(joint++)->values[0];
         }

@@ -110,7 +110,7 @@ TEST_CASE("plans are flown in worlds that do not depend on threads, and certific
     const ScratchFolder alone, together;
     ReadCampaign read = small_campaign(2);
     read.problems[0].uncertainty = Uncertainty();
-    read.problems[0].planner.worlds = 2;
+    read.problems[0].planner.max_failure_probability = 0.3;
     read.campaign.variants = {Variant::mp_arm, Variant::mp_arm_ada};
     read.campaign.evaluation_worlds = 9;
     read.campaign.jobs = 1;
@@ -159,28 +159,30 @@ TEST_CASE("plans made for one uncertainty are flown in the worlds of another") {
 TEST_CASE("a campaign varies the parameters of its algorithms") {
     const ScratchFolder folder;
     ReadCampaign read = small_campaign(1);
-    read.problems[0].planner.parameters = {{"local_bias", 0.0}};  // mp-arm has none
-    read.campaign.parameters = {{}, {{"goal_bias", 0.9}}, {{"first_goal_bias", 0.9}}};
+    read.problems[0].planner.parameters = {{"local_bias", 0.0}};
+    read.campaign.parameters = {{}, {{"goal_bias", 0.9}}, {{"first_goal_bias", 0.9}}, {{"rewire_factor", 2.0}}};
     run_into(folder, read);
     const CampaignResults results = results_in(folder);
     std::vector<std::string> names;
     for (const PlannerSetup& planner : results.plan.planners) {
         names.push_back(planner.name());
     }
-    CHECK(names == std::vector<std::string>{"mp-arm rrt-star", "mp-arm rrt-star, goal_bias 0.9", "mp-arm-da rrt-star",
+    CHECK(names == std::vector<std::string>{"mp-arm rrt-star", "mp-arm rrt-star, goal_bias 0.9",
+                                            "mp-arm rrt-star, first_goal_bias 0.9", "mp-arm-da rrt-star",
                                             "mp-arm-da rrt-star, goal_bias 0.9",
                                             "mp-arm-da rrt-star, first_goal_bias 0.9"});
     CHECK(results.plan.left_out ==
-          std::vector<std::string>{"mp-arm rrt-star, first_goal_bias 0.9: the algorithm has no "
-                                   "parameter first_goal_bias for this variant"});
-    // A set that matters makes a search of its own: goal_bias from the start for mp-arm, first_goal_bias for mp-arm-da.
+          std::vector<std::string>{
+              "mp-arm rrt-star, rewire_factor 2: the algorithm has no parameter rewire_factor for this variant",
+              "mp-arm-da rrt-star, rewire_factor 2: the algorithm has no parameter rewire_factor for this variant"});
+    // A set that matters makes a search of its own.
     std::vector<std::uint64_t> work(names.size());
     for (const Run& run : results.runs) {
         REQUIRE(run.status == RunStatus::solved);
         work[run.planner] = run.states_checked + run.edges_simulated;
     }
-    CHECK(work[0] != work[1]);
-    CHECK(work[2] != work[4]);
+    CHECK(work[0] != work[2]);
+    CHECK(work[3] != work[5]);
     CHECK(answer(folder, "SELECT settings FROM plannerConfigs WHERE id = 2") == "goal_bias 0.9");
 }
 

@@ -158,11 +158,13 @@ TEST_CASE("plans of every variant count with their certificate, or without one w
 }
 
 TEST_CASE("a certificate of MP-ARM-DA is flown near surfaces, of which its own worlds know nothing") {
-    Problem problem = uncertain_problem();
+    Problem problem = ceiling_problem();
+    problem.uncertainty.emplace();
+    problem.planner.max_failure_probability = 0.05;
     problem.planner.variant = Variant::mp_arm_da;
     problem.planner.check_execution = false;
     problem.planner.max_iterations = 150;
-    problem.uncertainty->ceiling_scale = Spread::of_sd(3);  // which kills flights near the ceiling, and those alone
+    problem.uncertainty->ceiling_scale = Spread::over(0.7, 0.9);  // which kills flights near the ceiling, and those alone
     const Solution solution = solve(problem);
     REQUIRE(solution.plan);
     CHECK(solution.status != Status::solved);
