@@ -20,7 +20,7 @@ class NearestPlaces {
     NearestPlaces(const NearestPlaces&) = delete;
     NearestPlaces& operator=(const NearestPlaces&) = delete;
 
-    static constexpr std::size_t default_indexed_from = 20000;
+    static constexpr std::size_t default_indexed_from = 1000;
 
     /// Adds a place; the first has the number 0.
     void add(const Configuration& place);
