@@ -81,7 +81,7 @@ class PlannedFlights {
 
     /// Flies a job again in all its worlds, by the plain loop over ticks: neither counted nor ended from outside. May
     /// be called from any thread.
-    void fly_again(FleetJob& job) const;
+    void fly_again(FleetJob& fleet) const;
 
     /// Flies from each moment to the next again through the planner's own model, by the plain loop over ticks. May be
     /// called from any thread.
