@@ -74,8 +74,10 @@ std::vector<NearestPlaces::Found> NearestPlaces::indexed(const Configuration& to
     const Index::Place place{to, places_.size()};
     std::vector<Index::Place> near;
     index_->neighbors.nearestK(place, count, near);
-    // Which of several nodes at the same distance it gives depends on random numbers: all that are as near follow.
-    index_->neighbors.nearestR(place, space_.distance_m(near.back().at, to), near);
+    // Which of several places at the same distance it gives depends on random numbers: all that are as near follow. The
+    // distance back may differ by rounding.
+    constexpr double rounded_up = 1 + 1e-9;
+    index_->neighbors.nearestR(place, rounded_up * space_.distance_m(near.back().at, to), near);
     std::vector<Found> found;
     found.reserve(near.size());
     for (const Index::Place& each : near) {
