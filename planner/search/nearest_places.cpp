@@ -76,8 +76,8 @@ std::vector<NearestPlaces::Found> NearestPlaces::indexed(const Configuration& to
     index_->neighbors.nearestK(place, count, near);
     // Which of several places at the same distance it gives depends on random numbers: all that are as near follow. The
     // distance back may differ by rounding.
-    constexpr double rounded_up = 1 + 1e-9;
-    index_->neighbors.nearestR(place, rounded_up * space_.distance_m(near.back().at, to), near);
+    constexpr double rounding_m = 1e-9;
+    index_->neighbors.nearestR(place, space_.distance_m(near.back().at, to) + rounding_m, near);
     std::vector<Found> found;
     found.reserve(near.size());
     for (const Index::Place& each : near) {
