@@ -19,7 +19,9 @@ double max_difference(const Configuration& a, const Configuration& b) {
 }  // namespace
 
 FlightPoint moment_at(const FlightNode& node) {
-    return {node.fleet.front(), {}, node.reference, node.configuration, node.cost, node.ticks_from_start};
+    return {node.fleet.front(), {node.fleet.begin() + 1, node.fleet.end()},
+            node.reference,     node.configuration,
+            node.cost,          node.ticks_from_start};
 }
 
 FlightTree::FlightTree(const FlightPoint& start, PlannedFlights& flights)

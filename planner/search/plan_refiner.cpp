@@ -389,15 +389,21 @@ void PlanRefiner::improve() {
 }
 
 std::vector<FlightPoint> PlanRefiner::moments_of(const FlownPlan& flown) const {
+    // Counterexamples, at the end of a fleet, are no worlds of the task.
+    const SearchWorlds* const worlds = flights_.task().worlds;
+    const auto others_of = [count = worlds != nullptr ? worlds->worlds.size() : 0](const Fleet& fleet) {
+        return Fleet(fleet.begin() + 1, fleet.begin() + 1 + static_cast<std::ptrdiff_t>(count));
+    };
     std::vector<FlightPoint> moments;
     std::int64_t tick = 0;
     for (std::size_t i = 0; i < flown.points.size(); ++i) {
-        moments.push_back(
-            {flown.fleets[i].front(), {}, flown.points[i], configuration_of(flown.points[i]), flown.costs[i], tick});
+        moments.push_back({flown.fleets[i].front(), others_of(flown.fleets[i]), flown.points[i],
+                           configuration_of(flown.points[i]), flown.costs[i], tick});
         tick += i < flown.ticks.size() ? flown.ticks[i] : 0;
     }
     FlightPoint end = moments.back();
     end.vehicle = flown.fleets.back().front();
+    end.others = others_of(flown.fleets.back());
     end.cost = flown.cost;
     end.ticks += flights_.hold_leg(end.reference).segment.ticks();
     moments.push_back(end);

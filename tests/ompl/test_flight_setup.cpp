@@ -218,6 +218,8 @@ TEST_CASE("in an uncertain problem every planner flies in all worlds, and ours g
     REQUIRE(f.solve(f.flights.make_flight_tree_planner(), 3000) == ob::PlannerStatus::EXACT_SOLUTION);
     REQUIRE(f.flights.certificate());
     CHECK(f.flights.certificate()->is_given);
+    CHECK(f.path().check());
+    REQUIRE(f.flights.plan_of(f.path()));
 
     ompl::RNG::setSeed(7);
     f.flights.simple_setup()->clear();
