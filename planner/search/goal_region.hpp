@@ -28,7 +28,8 @@ class GoalRegion {
     /// Whether a flight to a configuration may well meet the goal.
     [[nodiscard]] virtual bool contains(const Configuration& configuration) const = 0;
 
-    /// Whether it is the problem's: then the rules of flights judge the whole hover; otherwise is_met() does, at its end.
+    /// Whether it is the problem's: then the rules of flights judge the whole hover; otherwise is_met() does, at its
+    /// end.
     [[nodiscard]] virtual bool is_of_problem() const noexcept = 0;
     /// Whether a vehicle meets the goal now: in the region, and slow.
     [[nodiscard]] virtual bool is_met(const FlightState& vehicle) const = 0;

@@ -34,8 +34,8 @@ constexpr double max_cost_ratio = 1.5;
 
 }  // namespace
 
-PlanRefiner::PlanRefiner(const FlightPoint& start, PlannedFlights& flights, Random& random)
-    : start_(start), flights_(flights), changes_(flights, random) {}
+PlanRefiner::PlanRefiner(FlightPoint start, PlannedFlights& flights, Random& random)
+    : start_(std::move(start)), flights_(flights), changes_(flights, random) {}
 
 const FlownPlan* PlanRefiner::best() const noexcept {
     return tracks_.empty() ? nullptr : &tracks_.front().plan;

@@ -32,7 +32,7 @@ using Lineage = std::vector<Plan>;
 class PlanRefiner {
  public:
     /// @param start the moment at which all plans begin   @param flights and `random` must outlive it
-    PlanRefiner(const FlightPoint& start, PlannedFlights& flights, Random& random);
+    PlanRefiner(FlightPoint start, PlannedFlights& flights, Random& random);
 
     /// Whether there is room for another plan to work on.
     [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < max_tracks; }

@@ -164,7 +164,8 @@ TEST_CASE("a certificate of MP-ARM-DA is flown near surfaces, of which its own w
     problem.planner.variant = Variant::mp_arm_da;
     problem.planner.check_execution = false;
     problem.planner.max_iterations = 150;
-    problem.uncertainty->ceiling_scale = Spread::over(0.7, 0.9);  // which kills flights near the ceiling, and those alone
+    problem.uncertainty->ceiling_scale =
+        Spread::over(0.7, 0.9);  // which kills flights near the ceiling, and those alone
     const Solution solution = solve(problem);
     REQUIRE(solution.plan);
     CHECK(solution.status != Status::solved);
