@@ -6,12 +6,13 @@ Searches run one after the other, on two threads; flights in worlds are those of
 """
 
 import argparse
-import json
 import pathlib
 import re
 import statistics
 import subprocess
 import tempfile
+
+from program import run
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 PLUS = "positions_m: [[0.45, 0, 0.06], [-0.45, 0, 0.06], [0, 0.45, 0.06], [0, -0.45, 0.06]]"
@@ -38,15 +39,6 @@ def problem_file(folder, problem, hubs, has_wash):
     file = folder / f"{name}.yaml"
     file.write_text(text)
     return file
-
-
-def run(program, *arguments):
-    """What a command prints as JSON."""
-    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=False)
-    try:
-        return json.loads(done.stdout)
-    except json.JSONDecodeError:
-        raise SystemExit(f"bench/arm_wash.py: {' '.join(map(str, arguments))}: {done.stderr}") from None
 
 
 def trim(program, file, arm_deg):

@@ -7,11 +7,12 @@ Searches run one after the other, on two threads; plans are flown by `downwash v
 
 import argparse
 import csv
-import json
 import pathlib
 import statistics
 import subprocess
 import tempfile
+
+from program import run
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 HOLD_S = 5
@@ -37,15 +38,6 @@ def problem_file(folder, name, goal):
     file = folder / f"{name}.yaml"
     file.write_text(text)
     return file
-
-
-def run(program, *arguments):
-    """What a command prints as JSON."""
-    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=False)
-    try:
-        return json.loads(done.stdout)
-    except json.JSONDecodeError:
-        raise SystemExit(f"bench/contact.py: {' '.join(map(str, arguments))}: {done.stderr}") from None
 
 
 def hold_power_w(solution, out):

@@ -488,20 +488,3 @@ TEST_CASE("A plan counts if its direct flight reaches the goal and keeps the mar
         CHECK_FALSE(planning::is_good(flight, 0.05));
     }
 }
-
-TEST_CASE("MP-ARM's plans pass corners at speed like those of the other variants") {
-    Problem problem = with(Variant::mp_arm);
-    problem.obstacles.push_back(test::box("post", {0.3, 8, 2}, {0, 0, 1}));
-    problem.planner.max_iterations = 600;
-    problem.planner.check_execution = false;
-    const Solution solution = solve(problem);
-    REQUIRE(solution.status == Status::solved);
-    bool moves_at_a_corner = false;
-    for (std::size_t i = 1; i + 1 < solution.plan->reference.size(); ++i) {
-        moves_at_a_corner = moves_at_a_corner || !is_at_rest(solution.plan->reference[i].point);
-    }
-    CHECK(moves_at_a_corner);
-    CHECK(solution.planning.edges_simulated == 0);
-    CHECK(solution.planning.simulated_s == 0);
-    CHECK(solution.planning.states_checked > 0);
-}
