@@ -45,9 +45,7 @@ std::unique_ptr<WorldFlights> PlanEvaluation::take() {
             return flights;
         }
     }
-    constexpr int threads = 1;
-    constexpr bool finds_clearance = false;
-    return std::make_unique<WorldFlights>(problem_, model_, map_, threads, finds_clearance);
+    return std::make_unique<WorldFlights>(problem_, model_, map_);
 }
 
 void PlanEvaluation::give_back(std::unique_ptr<WorldFlights> flights) {

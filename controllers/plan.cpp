@@ -72,6 +72,19 @@ Plan Plan::beginning(std::int64_t ticks) const {
     return part;
 }
 
+Plan Plan::divided(std::int64_t most_ticks) const {
+    Plan parts{{reference.front()}, tick_s, axes};
+    for (std::size_t knot = 1; knot < reference.size(); ++knot) {
+        const ReferenceSegment segment = segment_to(knot);
+        const std::int64_t begin = reference[knot - 1].tick;
+        for (std::int64_t tick = most_ticks; tick < segment.ticks(); tick += most_ticks) {
+            parts.reference.push_back({begin + tick, segment.at_tick(tick)});
+        }
+        parts.reference.push_back(reference[knot]);
+    }
+    return parts;
+}
+
 Plan Plan::followed_by(const Plan& next) const {
     if (reference.empty()) {
         return next;

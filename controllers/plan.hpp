@@ -42,6 +42,8 @@ struct DOWNWASH_EXPORT Plan {
     /// The beginning of the plan, so many ticks long; a plan that is over earlier stays at its last point.
     /// @pre there is a knot
     [[nodiscard]] Plan beginning(std::int64_t ticks) const;
+    /// The same reference with knots at most so many ticks apart. @pre there is a knot; most_ticks is at least 1
+    [[nodiscard]] Plan divided(std::int64_t most_ticks) const;
     /// This plan and, from its last knot on, another one that begins there.
     [[nodiscard]] Plan followed_by(const Plan& next) const;
     /// This plan and a stay at its last point. @pre there is a knot

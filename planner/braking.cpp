@@ -1,7 +1,9 @@
 #include "downwash/planner/braking.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "downwash/planner/world_flights.hpp"
@@ -52,6 +54,23 @@ bool is_inside(const Bounds& bounds, const Configuration& at) {
            at[plane::z] <= bounds.z_high_m;
 }
 
+Bounds hull_of(const Bounds& a, const Bounds& b) {
+    return {std::min(a.x_low_m, b.x_low_m), std::max(a.x_high_m, b.x_high_m), std::min(a.z_low_m, b.z_low_m),
+            std::max(a.z_high_m, b.z_high_m)};
+}
+
+/// The vehicle after so many legs of a job, or where the flight ended before.
+const FlightState& state_at_leg(const FlightJob& job, std::size_t legs) {
+    if (const FlightLeg* const rejected = job.rejected_leg()) {
+        legs = std::min(legs, static_cast<std::size_t>(rejected - job.legs.data()) + 1);
+    }
+    return legs == 0 ? job.start : job.legs[legs - 1].end;
+}
+
+bool are_same(const std::vector<FlightState>& a, const std::vector<FlightState>& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(FlightState)) == 0;
+}
+
 /// A hover there: it may be a little beside it, but has to come to rest.
 Goal hover_at(const Configuration& rest) {
     Goal goal;
@@ -77,7 +96,7 @@ void Braking::fly_around(const Bounds& places) {
     if (!pool_ || map != map_) {
         map_ = std::move(map);
         FlightRules rules = rules_of_execution();
-        rules.finds_min_clearance = true;
+        rules.finds_min_clearance = ClearanceError{};
         pool_ = std::make_unique<FlightPool>(*model_, map_.get(), rules, nullptr, threads_);
     }
 }
@@ -98,93 +117,126 @@ Bounds Braking::places_on(std::span<const Try> tries, const Start& from) const {
             std::clamp(places.z_high_m, bounds.z_low_m, bounds.z_high_m) + swing_m};
 }
 
-std::vector<Braking::Try> Braking::all_tries(const ReferencePoint& from) const {
+Braking::Tries Braking::all_tries(Moment moment) const {
+    const ReferencePoint from = reference_at(moment.from);
+    if (moment.fleet.empty()) {
+        const FlightState here = start_state(*model_, moment.from);
+        for (const FlownWorld& world : worlds_) {
+            moment.fleet.push_back(here);
+            moment.fleet.back().world = memory_at_start(world, here.plant);
+        }
+    }
+    const double margin_m = kept_margin_m(moment.fleet.front());
+    Tries tries{std::move(moment), margin_m, {}};
     const double tick_s = model_->tick().tick_s;
-    std::vector<Try> tries;
     for (const Maneuver& maneuver : maneuvers) {
         const MotionLimits limits = harder_limits(problem_.motion, maneuver.harder);
         const Configuration rest = rest_of(from, problem_.axes(), limits, maneuver);
         if (is_inside(problem_.bounds, rest)) {
             Plan plan{{{0, from}}, tick_s};
             plan.reference.push_back({shortest_ticks(from, at_rest(rest), limits, tick_s), at_rest(rest)});
-            tries.push_back({std::move(plan), hover_at(rest)});
+            tries.all.push_back({std::move(plan), hover_at(rest)});
         }
     }
+    leave_out_near_rests(tries);
     return tries;
 }
 
 /// Ways to places without the margin, unless all are.
-void Braking::leave_out_near_rests(std::vector<Try>& tries, double margin_m) const {
+void Braking::leave_out_near_rests(Tries& tries) const {
     const auto is_near = [&](const Try& each) {
-        return model_->collisions().clearance_m(level_at(each.plan.last())) < margin_m;
+        return model_->collisions().clearance_m(level_at(each.plan.last())) < tries.margin_m;
     };
-    if (!std::ranges::all_of(tries, is_near)) {
-        std::erase_if(tries, is_near);
+    if (!std::ranges::all_of(tries.all, is_near)) {
+        std::erase_if(tries.all, is_near);
     }
 }
 
-/// Mostly the first way is safe, else one of the next two, for which a small map is enough. Where none of them is, the
-/// others are flown in the nominal world, and those that are safe there in the worlds, until one is safe in all.
+bool Braking::Tries::has_safe() const {
+    return std::ranges::any_of(std::span(all).first(flown), [](const Try& each) { return each.failures == 0; });
+}
+
+Braking::Batch Braking::next(Tries& tries, std::size_t count, std::size_t first_world) const {
+    const std::size_t first = tries.flown;
+    tries.flown += std::min(count, tries.all.size() - first);
+    return {&tries, std::span(tries.all).subspan(first, tries.flown - first), first_world, worlds_.size()};
+}
+
 std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::vector<FlightState>& fleet) {
-    std::vector<FlightState> vehicles = fleet;
-    if (vehicles.empty()) {
-        const FlightState here = start_state(*model_, from);
-        for (const FlownWorld& world : worlds_) {
-            vehicles.push_back(here);
-            vehicles.back().world = memory_at_start(world, here.plant);
+    return std::move(best_stops({{from, fleet}}).front());
+}
+
+/// Mostly the first way is safe, else one of the next two, for which a small map is enough.
+std::vector<std::optional<Braking::Stop>> Braking::best_stops(std::vector<Moment> moments,
+                                                              const StopCondition& is_over) {
+    std::vector<Tries> tries;
+    for (Moment& moment : moments) {
+        tries.push_back(all_tries(std::move(moment)));
+    }
+    for (const std::size_t count : {1, 2}) {
+        throw_if_over(is_over);
+        std::vector<Batch> batches;
+        std::optional<Bounds> places;
+        for (Tries& each : tries) {
+            if (each.is_open()) {
+                const std::size_t first_tries = std::min<std::size_t>(3, each.all.size());
+                const Bounds own = places_on(std::span(each.all).first(first_tries), each.moment.from);
+                places = places ? hull_of(*places, own) : own;
+                batches.push_back(next(each, count, 0));
+            }
+        }
+        if (places) {
+            fly_around(*places);
+            fly(batches);
         }
     }
-    std::vector<Try> tries = all_tries(reference_at(from));
-    if (tries.empty()) {
-        return std::nullopt;
-    }
-    leave_out_near_rests(tries, kept_margin_m(vehicles.front()));
-    const auto is_safe = [](const Try& each) { return each.failures == 0; };
-    const std::span all(tries);
-    std::size_t flown = 0;
-    const auto has_safe = [&] { return std::ranges::any_of(all.first(flown), is_safe); };
-    const auto fly_next = [&](std::size_t count, std::size_t first_world) {
-        count = std::min(count, all.size() - flown);
-        fly(all.subspan(flown, count), vehicles, first_world, worlds_.size());
-        flown += count;
-    };
-    fly_around(places_on(all.first(std::min<std::size_t>(3, all.size())), from));
-    fly_next(1, 0);
-    if (!has_safe()) {
-        fly_next(2, 0);
-    }
-    if (!has_safe() && flown < all.size()) {
-        const std::span others = all.subspan(flown);
-        fly_around(places_on(others, from));
-        fly(others, vehicles, 0, 1);
-        std::stable_partition(others.begin(), others.end(), is_safe);
-        while (!has_safe() && flown < all.size()) {
-            fly_next(2, 1);
+    std::vector<std::optional<Stop>> stops;
+    for (Tries& each : tries) {
+        throw_if_over(is_over);
+        if (each.is_open()) {
+            try_the_others(each);
         }
+        const auto end = each.all.begin() + static_cast<std::ptrdiff_t>(each.flown);
+        const auto best =
+            std::min_element(each.all.begin(), end, [](const Try& a, const Try& b) { return a.failures < b.failures; });
+        stops.push_back(each.all.empty() ? std::nullopt : std::optional(Stop{std::move(best->plan), best->failures}));
     }
-    const auto best = std::min_element(tries.begin(), tries.begin() + static_cast<std::ptrdiff_t>(flown),
-                                       [](const Try& a, const Try& b) { return a.failures < b.failures; });
-    return Stop{std::move(best->plan), best->failures};
+    return stops;
+}
+
+/// They are flown in the nominal world, and those that are safe there in the worlds, until one is safe in all.
+void Braking::try_the_others(Tries& tries) {
+    const std::span others = std::span(tries.all).subspan(tries.flown);
+    fly_around(places_on(others, tries.moment.from));
+    fly(std::array{Batch{&tries, others, 0, 1}});
+    std::stable_partition(others.begin(), others.end(), [](const Try& each) { return each.failures == 0; });
+    while (tries.is_open()) {
+        fly(std::array{next(tries, 2, 1)});
+    }
 }
 
 /// That of the problem, if the vehicle has it.
 double Braking::kept_margin_m(const FlightState& vehicle) const {
     const double here_m = model_->collisions().clearance_m(pose_of(vehicle));
-    return std::min(problem_.planner.safety_margin_m, here_m - min_clearance_error_m(here_m));
+    return std::min(problem_.planner.safety_margin_m, here_m - ClearanceError{}.at_m(here_m));
 }
 
-void Braking::fly(std::span<Try> tries, const std::vector<FlightState>& fleet, std::size_t first_world,
-                  std::size_t last_world) {
-    const double margin_m = kept_margin_m(fleet.front());
+void Braking::fly(std::span<const Batch> batches) {
     const std::int64_t settling = std::llround(goal_settling_s / model_->tick().tick_s);
     std::vector<FlightJob> jobs;
-    for (const Try& each : tries) {
-        std::vector<FlightLeg> legs;
-        for (const ReferenceSegment& segment : with_hover(each.plan, each.hover, *model_).segments()) {
-            legs.push_back({segment});
-        }
-        for (std::size_t i = first_world; i < last_world; ++i) {
-            jobs.push_back({fleet[i], legs, settling, &worlds_[i], 0, &each.hover});
+    std::vector<Try*> try_of;
+    std::vector<double> margin_of_m;
+    for (const Batch& batch : batches) {
+        for (Try& each : batch.tries) {
+            std::vector<FlightLeg> legs;
+            for (const ReferenceSegment& segment : with_hover(each.plan, each.hover, *model_).segments()) {
+                legs.push_back({segment});
+            }
+            for (std::size_t i = batch.first_world; i < batch.last_world; ++i) {
+                jobs.push_back({batch.of->moment.fleet[i], legs, settling, &worlds_[i], 0, &each.hover});
+                try_of.push_back(&each);
+                margin_of_m.push_back(batch.of->margin_m);
+            }
         }
     }
     pool_->fly(jobs);
@@ -193,9 +245,9 @@ void Braking::fly(std::span<Try> tries, const std::vector<FlightState>& fleet, s
         const bool is_nominal = job.world == worlds_.data();
         const Rejection rejection = job.rejection();
         // In another world the vehicle may still be settling.
-        const bool fails = is_nominal ? rejection != Rejection::none || min_clearance_m(job) < margin_m
+        const bool fails = is_nominal ? rejection != Rejection::none || min_clearance_m(job) < margin_of_m[i]
                                       : rejection != Rejection::none && rejection != Rejection::goal_missed;
-        tries[i / (last_world - first_world)].failures += fails ? 1 : 0;
+        try_of[i]->failures += fails ? 1 : 0;
     }
 }
 
@@ -210,49 +262,58 @@ StopFinder::StopFinder(const Problem& problem, std::shared_ptr<const FlightModel
 
 SafeStops StopFinder::along(const Plan& plan, const StopCondition& is_over) {
     constexpr double step_s = 0.5;
-    const auto step = std::max<std::int64_t>(1, std::llround(step_s / plan.tick_s));
-    std::vector<std::int64_t> ticks;
-    for (const ReferenceKnot& knot : plan.reference) {
-        for (std::int64_t tick = ticks.empty() ? knot.tick : ticks.back() + step; tick < knot.tick; tick += step) {
-            ticks.push_back(tick);
-        }
-        ticks.push_back(knot.tick);
-    }
-    Plan moments{{}, plan.tick_s};
-    for (const std::int64_t tick : ticks) {
-        moments.reference.push_back({tick, plan.at(tick)});
-    }
+    const Plan moments = plan.divided(std::max<std::int64_t>(1, std::llround(step_s / plan.tick_s)));
+    const std::vector<ReferenceKnot>& knots = moments.reference;
     const FlightState nominal = start_state(*model_, problem_.start);
     std::vector<FlightJob> fleet{{nominal, {}, 0, &model_->nominal_world()}};
     const std::vector<std::optional<FlightState>> starts = flights_.starts_in(worlds_);
     for (std::size_t i = 0; i < worlds_.size(); ++i) {
         fleet.push_back({starts[i].value_or(nominal), {}, 0, &worlds_[i]});
     }
-    SafeStops stops;
-    std::int64_t without = 0;
-    for (std::size_t i = 0; i < ticks.size(); ++i) {
-        throw_if_over(is_over);
-        const std::int64_t tick = ticks[i];
-        if (i > 0) {
-            flights_.advance(fleet, moments, i - 1, i, std::nullopt);
-        }
-        std::vector<FlightState> vehicles;
-        vehicles.reserve(fleet.size());
+    flights_.advance(fleet, moments, 0, knots.size() - 1, std::nullopt);
+    throw_if_over(is_over);
+
+    std::vector<Known> all(knots.size());
+    std::vector<std::size_t> unknown;
+    std::vector<Braking::Moment> asked;
+    for (std::size_t i = 0; i < knots.size(); ++i) {
+        Known& known = all[i];
         for (const FlightJob& job : fleet) {
-            vehicles.push_back(job.legs.empty() ? job.start : job.end());
+            known.moment.fleet.push_back(state_at_leg(job, i));
         }
-        SafeStops::Moment& moment = stops.moments.emplace_back();
-        moment.tick = tick;
-        const auto stop = braking_.best_stop(start_of(*model_, vehicles.front(), moments.reference[i].point), vehicles);
-        if (stop && stop->failures == 0) {
-            moment.rest = stop->plan.last();
-            moment.duration_s = stop->plan.duration_s();
-        } else if (i + 1 < ticks.size()) {
-            without += ticks[i + 1] - tick;
+        known.moment.from = start_of(*model_, known.moment.fleet.front(), knots[i].point);
+        known.stop.tick = knots[i].tick;
+        const auto before = std::ranges::find_if(known_, [&](const Known& each) {
+            return each.stop.tick == knots[i].tick && each.moment.from.reference == known.moment.from.reference &&
+                   are_same(each.moment.fleet, known.moment.fleet);
+        });
+        if (before != known_.end()) {
+            known.stop = before->stop;
+        } else {
+            unknown.push_back(i);
+            asked.push_back(known.moment);
         }
     }
-    if (ticks.back() > 0) {
-        stops.share_without = static_cast<double>(without) / static_cast<double>(ticks.back());
+    const std::vector<std::optional<Braking::Stop>> found = braking_.best_stops(std::move(asked), is_over);
+    for (std::size_t i = 0; i < unknown.size(); ++i) {
+        if (found[i] && found[i]->failures == 0) {
+            SafeStops::Moment& moment = all[unknown[i]].stop;
+            moment.rest = found[i]->plan.last();
+            moment.duration_s = found[i]->plan.duration_s();
+        }
+    }
+    known_ = std::move(all);
+
+    SafeStops stops;
+    std::int64_t without = 0;
+    for (std::size_t i = 0; i < known_.size(); ++i) {
+        stops.moments.push_back(known_[i].stop);
+        if (!known_[i].stop.rest && i + 1 < known_.size()) {
+            without += knots[i + 1].tick - knots[i].tick;
+        }
+    }
+    if (knots.back().tick > 0) {
+        stops.share_without = static_cast<double>(without) / static_cast<double>(knots.back().tick);
     }
     return stops;
 }

@@ -43,6 +43,15 @@ class DOWNWASH_EXPORT Braking {
     /// @param fleet the vehicle in the nominal world and in each of the worlds; empty: it is the same in all of them
     [[nodiscard]] std::optional<Stop> best_stop(const Start& from, const std::vector<FlightState>& fleet = {});
 
+    /// A vehicle, and where it is in each world.
+    struct Moment {
+        Start from;
+        std::vector<FlightState> fleet = {};
+    };
+    /// The same for many moments, whose flights are side by side. @throws WorkStopped when it is over before
+    [[nodiscard]] std::vector<std::optional<Stop>> best_stops(std::vector<Moment> moments,
+                                                              const StopCondition& is_over = {});
+
  private:
     /// A way to brake that does not leave the bounds.
     struct Try {
@@ -50,13 +59,31 @@ class DOWNWASH_EXPORT Braking {
         Goal hover;
         std::size_t failures = 0;  ///< failures in the worlds in which it was flown
     };
-    [[nodiscard]] std::vector<Try> all_tries(const ReferencePoint& from) const;
-    void leave_out_near_rests(std::vector<Try>& tries, double margin_m) const;
+    /// The ways to brake from a moment, those that were flown first.
+    struct Tries {
+        Moment moment;
+        double margin_m;
+        std::vector<Try> all;
+        std::size_t flown = 0;
+
+        [[nodiscard]] bool has_safe() const;
+        [[nodiscard]] bool is_open() const { return flown < all.size() && !has_safe(); }
+    };
+    /// Some tries of a moment, to be flown in the worlds from the first to before the last.
+    struct Batch {
+        const Tries* of;
+        std::span<Try> tries;
+        std::size_t first_world, last_world;
+    };
+    [[nodiscard]] Tries all_tries(Moment moment) const;
+    void leave_out_near_rests(Tries& tries) const;
     [[nodiscard]] Bounds places_on(std::span<const Try> tries, const Start& from) const;
     [[nodiscard]] double kept_margin_m(const FlightState& vehicle) const;
-    /// Flies some of them side by side, in the worlds from the first to before the last.
-    void fly(std::span<Try> tries, const std::vector<FlightState>& fleet, std::size_t first_world,
-             std::size_t last_world);
+    /// The next tries of a moment, up to so many.
+    [[nodiscard]] Batch next(Tries& tries, std::size_t count, std::size_t first_world) const;
+    void try_the_others(Tries& tries);
+    /// Flies batches side by side.
+    void fly(std::span<const Batch> batches);
     /// Later flights are with a map around these places.
     void fly_around(const Bounds& places);
 
@@ -86,6 +113,12 @@ class DOWNWASH_EXPORT StopFinder {
     std::vector<FlownWorld> worlds_;  ///< without the nominal one
     Braking braking_;
     WorldFlights flights_;
+    /// What is known of moments of the plan before: most of them are those of the next plan.
+    struct Known {
+        Braking::Moment moment;
+        SafeStops::Moment stop;
+    };
+    std::vector<Known> known_;
 };
 
 }  // namespace downwash::planning

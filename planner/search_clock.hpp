@@ -5,6 +5,7 @@
 #include <optional>
 #include <thread>
 
+#include "downwash/planner/certificate.hpp"
 #include "downwash/planner/solve_options.hpp"
 #include "downwash/planner/stopwatch.hpp"
 #include "downwash/problems/problem.hpp"
@@ -15,7 +16,8 @@ namespace downwash::planning {
 /// What every search has in common: its limit of time, its record, and whom it tells.
 class SearchClock {
  public:
-    SearchClock(const PlannerSettings& settings, const SolveOptions& options) : options_(options) {
+    SearchClock(const PlannerSettings& settings, const SolveOptions& options)
+        : options_(options), confidence_(settings.confidence) {
         if (settings.time_limit_s || !settings.max_iterations) {
             limit_s_ = settings.time_limit_s.value_or(default_time_limit_s);
         }
@@ -78,10 +80,12 @@ class SearchClock {
         progress_.best_cost = improvements.empty() ? std::nullopt : std::optional(improvements.back().cost);
         progress_.worlds = is_certifying_ ? std::optional(certified_in_.load()) : std::nullopt;
         progress_.failures = failed_in_;
+        progress_.failure_bound = failure_interval(failed_in_, certified_in_, confidence_).high;
         options_.on_progress(progress_);
     }
 
     const SolveOptions& options_;
+    double confidence_;
     Stopwatch clock_;
     std::optional<double> limit_s_;
     Progress progress_;  ///< as reported last

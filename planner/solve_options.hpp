@@ -27,6 +27,8 @@ struct Progress {
     /// Worlds in which a plan was flown so far, while it is certified, and in how many it failed. Empty at other times.
     std::optional<std::uint64_t> worlds;
     std::uint64_t failures = 0;
+    double failure_bound =
+        1;  ///< the failure probability is at most this, by these flights, with the problem's confidence
 };
 
 /// A plan that a search has just found, better than all before.

@@ -9,6 +9,7 @@
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/touch.hpp"
+#include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
 namespace {
@@ -51,19 +52,19 @@ double min_clearance_m(const FlightJob& job) {
 }
 
 WorldFlights::WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model,
-                           std::shared_ptr<const AeroMap> map, int threads, bool finds_clearance)
+                           std::shared_ptr<const AeroMap> map, int threads, std::optional<ClearanceError> clearance)
     : problem_(problem),
       model_(std::move(model)),
       map_(std::move(map)),
       goals_(goals_of(problem)),
       threads_(threads),
-      finds_clearance_(finds_clearance),
+      clearance_(clearance),
       pools_(goals_.size()) {}
 
 FlightPool& WorldFlights::pool(std::size_t goal) {
     if (pools_[goal] == nullptr) {
         FlightRules rules = rules_of_execution();
-        rules.finds_min_clearance = finds_clearance_;
+        rules.finds_min_clearance = clearance_;
         rules.is_over = [this] { return is_over_ && is_over_(); };
         pools_[goal] = std::make_unique<FlightPool>(*model_, map_.get(), rules, &goals_[goal], threads_);
     }
@@ -74,22 +75,19 @@ std::vector<std::optional<FlightState>> WorldFlights::starts_in(std::span<const 
     const FlightState nominal = start_state(*model_, problem_.start);
     std::vector<std::optional<FlightState>> starts(worlds.size(), nominal);
     if (is_at_rest(problem_.start)) {
-        const ReferencePoint here = at_rest(problem_.start.at);
-        const double tick_s = model_->tick().tick_s;
-        const ReferenceSegment hover(here, here, std::llround(settling_before_start_s / tick_s), tick_s);
-        std::vector<FlownWorld> quiet;
-        quiet.reserve(worlds.size());
-        std::vector<FlightJob> jobs;
-        for (const FlownWorld& world : worlds) {
-            quiet.push_back(without_noise(world));
-            FlightJob job{nominal, {{hover}}, 0, &quiet.back()};
-            job.start.world = memory_at_start(quiet.back(), nominal.plant);
-            jobs.push_back(std::move(job));
+        if (equilibria_ == nullptr) {
+            equilibria_ = std::make_unique<HoverEquilibria>(*model_, map_.get(), nominal);
         }
-        pool(0).fly(jobs);
-        for (std::size_t i = 0; i < jobs.size(); ++i) {
-            starts[i] = jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
+        run_parallel(worlds.size(), threads_, [&](std::size_t i) { starts[i] = equilibria_->in(worlds[i]); });
+        std::vector<std::size_t> without_equilibrium;
+        for (std::size_t i = 0; i < worlds.size(); ++i) {
+            if (!starts[i]) {
+                without_equilibrium.push_back(i);
+            } else if (!is_clear(*starts[i], worlds[i])) {
+                starts[i].reset();
+            }
         }
+        hover_at_start(worlds, without_equilibrium, starts);
     }
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         if (starts[i]) {
@@ -98,6 +96,37 @@ std::vector<std::optional<FlightState>> WorldFlights::starts_in(std::span<const 
         }
     }
     return starts;
+}
+
+void WorldFlights::hover_at_start(std::span<const FlownWorld> worlds,
+                                  const std::vector<std::size_t>& without_equilibrium,
+                                  std::vector<std::optional<FlightState>>& starts) {
+    if (without_equilibrium.empty()) {
+        return;
+    }
+    const FlightState nominal = start_state(*model_, problem_.start);
+    const ReferencePoint here = at_rest(problem_.start.at);
+    const double tick_s = model_->tick().tick_s;
+    const ReferenceSegment hover(here, here, std::llround(settling_before_start_s / tick_s), tick_s);
+    std::vector<FlownWorld> quiet;
+    quiet.reserve(without_equilibrium.size());
+    std::vector<FlightJob> jobs;
+    for (const std::size_t world : without_equilibrium) {
+        quiet.push_back(without_noise(worlds[world]));
+        FlightJob job{nominal, {{hover}}, 0, &quiet.back()};
+        job.start.world = memory_at_start(quiet.back(), nominal.plant);
+        jobs.push_back(std::move(job));
+    }
+    pool(0).fly(jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        starts[without_equilibrium[i]] =
+            jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
+    }
+}
+
+bool WorldFlights::is_clear(const FlightState& vehicle, const FlownWorld& world) const {
+    const PlanarPose pose = among_obstacles(pose_of(vehicle), &world);
+    return !model_->collisions().is_nearer_than(pose, 0) && (map_ == nullptr || is_flyable(*model_, *map_, pose));
 }
 
 void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::size_t first, std::size_t last,

@@ -11,13 +11,14 @@
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/simulation/flight_batch.hpp"
+#include "downwash/simulation/hover_equilibrium.hpp"
 
 namespace downwash {
 
 /// How a plan flies in one world.
 struct WorldFlight {
     Rejection rejection = Rejection::none;  ///< `unstable` also for a vehicle that does not stay at its start
-    double min_clearance_m = 0;             ///< up to where the flight ended, to min_clearance_error_m
+    double min_clearance_m = 0;             ///< up to where the flight ended, as well as it is found
     std::size_t goal = 0;                   ///< number of the goal that a failed flight was on the way to, or missed
 };
 
@@ -28,17 +29,18 @@ class DOWNWASH_EXPORT WorldFlights {
  public:
     /// @param map of the planner's own model; nullptr for none: then surfaces do not act
     /// @param threads at least 1; nothing but the time depends on it
-    /// @param finds_clearance without it flights take a third less time, and their clearance is infinite
+    /// @param clearance how well flights find their clearance; empty: they take a third less time, and their clearance
+    /// is infinite
     /// @pre problem outlives it
     WorldFlights(const Problem& problem, std::shared_ptr<const FlightModel> model, std::shared_ptr<const AeroMap> map,
-                 int threads = 1, bool finds_clearance = true);
+                 int threads = 1, std::optional<ClearanceError> clearance = {});
 
     ~WorldFlights() = default;
     WorldFlights(const WorldFlights&) = delete;
     WorldFlights& operator=(const WorldFlights&) = delete;
 
-    /// Vehicles that have hovered at the problem's start, or that start there moving; nothing for those that do not
-    /// stay there.
+    /// Vehicles that have hovered at the problem's start (HoverEquilibria), or that start there moving; nothing for
+    /// those that do not stay there.
     [[nodiscard]] std::vector<std::optional<FlightState>> starts_in(std::span<const FlownWorld> worlds);
 
     /// Flies a plan in each of the worlds. @param plan through the first `visits` goals of the problem
@@ -67,6 +69,13 @@ class DOWNWASH_EXPORT WorldFlights {
     void touch(const std::vector<FlightJob>& jobs, const Plan& held, const std::vector<std::size_t>& world_of,
                std::vector<WorldFlight>& flights, const StopCondition& is_over);
 
+    /// Flies the hover at the start in worlds without a known equilibrium.
+    void hover_at_start(std::span<const FlownWorld> worlds, const std::vector<std::size_t>& without_equilibrium,
+                        std::vector<std::optional<FlightState>>& starts);
+
+    /// Whether a vehicle touches nothing and is within the flyable area.
+    [[nodiscard]] bool is_clear(const FlightState& vehicle, const FlownWorld& world) const;
+
     /// The pool of flights to a goal, made when first needed.
     FlightPool& pool(std::size_t goal);
 
@@ -75,15 +84,16 @@ class DOWNWASH_EXPORT WorldFlights {
     std::shared_ptr<const AeroMap> map_;
     std::vector<Goal> goals_;
     int threads_;
-    bool finds_clearance_;
-    StopCondition is_over_;                           ///< what fly() asks while it goes on
-    std::vector<std::unique_ptr<FlightPool>> pools_;  ///< one for each goal
+    std::optional<ClearanceError> clearance_;
+    std::unique_ptr<const HoverEquilibria> equilibria_;  ///< at the start; made when first needed
+    StopCondition is_over_;                              ///< what fly() asks while it goes on
+    std::vector<std::unique_ptr<FlightPool>> pools_;     ///< one for each goal
 };
 
 /// A plan and the hover at its last goal, which ends at a knot of its own.
 [[nodiscard]] DOWNWASH_EXPORT Plan with_hover(const Plan& plan, const Goal& goal, const FlightModel& model);
 
-/// The least clearance along a job whose rules find it, to min_clearance_error_m [m]; infinite before its first leg.
+/// The least clearance along a job whose rules find it, as well as they do [m]; infinite before its first leg.
 [[nodiscard]] DOWNWASH_EXPORT double min_clearance_m(const FlightJob& job);
 
 }  // namespace downwash

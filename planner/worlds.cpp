@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <numeric>
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
@@ -45,6 +46,9 @@ std::vector<double> search_quantiles(const Robot& robot, std::uint64_t number) {
     return quantiles;
 }
 
+/// Enough to tell which flights came nearest.
+constexpr ClearanceError rough_clearance{0.1, 0.02};
+
 constexpr std::uint64_t worlds_per_attempt = 1'000'000;
 /// The worlds of screenings are none of any certificate.
 constexpr std::uint64_t first_screening = std::uint64_t{1} << 32U;
@@ -52,7 +56,10 @@ constexpr std::uint64_t first_screening = std::uint64_t{1} << 32U;
 }  // namespace
 
 ProblemWorlds::ProblemWorlds(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
-    : problem_(problem), flights_(problem, model.flight, model.true_map, options.threads), threads_(options.threads) {
+    : problem_(problem),
+      flights_(problem, model.flight, model.true_map, options.threads, rough_clearance),
+      close_flights_(problem, model.flight, model.true_map, options.threads, ClearanceError{}),
+      threads_(options.threads) {
     if (model.own_map != model.true_map) {
         in_free_air_ = std::make_unique<WorldFlights>(problem, model.flight, model.own_map, options.threads);
     }
@@ -128,27 +135,78 @@ FlownWorld ProblemWorlds::world(std::uint64_t index) const {
     return make_world(problem_.robot, draw_world(*problem_.uncertainty, problem_.robot, problem_.planner.seed, index));
 }
 
-void ProblemWorlds::fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
+void ProblemWorlds::look_closely(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
                                  const StopCondition& is_over) {
+    constexpr std::size_t flown_directly = 2;
+    constexpr double step_s = 0.5;
     std::vector<FlownWorld> worlds;
     worlds.reserve(samples.size());
     for (const WorldSample& sample : samples) {
         worlds.push_back(world(sample.world));
     }
-    const std::vector<std::optional<FlightState>> starts = flights_.starts_in(worlds);
     const std::span<const Goal> goals = std::span(flights_.goals()).first(visits);
-    run_parallel(samples.size(), threads_, [&](std::size_t i) {
-        if (!starts[i]) {
-            return;
+    const Plan moments = with_hover(whole, goals.back(), flights_.model())
+                             .divided(std::max<std::int64_t>(1, std::llround(step_s / whole.tick_s)));
+    const std::vector<std::optional<FlightState>> starts = close_flights_.starts_in(worlds);
+    std::vector<FlightJob> jobs;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        jobs.push_back({starts[i].value_or(FlightState{}), {}, 0, &worlds[i]});
+    }
+    close_flights_.advance(jobs, moments, 0, moments.reference.size() - 1, std::nullopt);
+    throw_if_over(is_over);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        samples[i].min_clearance_m = min_clearance_m(jobs[i]);
+    }
+    std::vector<std::size_t> nearest(samples.size());
+    std::iota(nearest.begin(), nearest.end(), std::size_t{0});
+    std::ranges::stable_sort(nearest, {}, [&](std::size_t i) { return samples[i].min_clearance_m; });
+    nearest.resize(std::min(flown_directly, nearest.size()));
+    const bool touches = touch_at(goals.back(), flights_.model().tick().plant, level_at(moments.last())) != nullptr;
+    run_parallel(nearest.size(), threads_, [&](std::size_t number) {
+        const FlightJob& job = jobs[nearest[number]];
+        WorldSample& sample = samples[nearest[number]];
+        if (touches) {
+            fly_directly(whole, goals, job, sample, is_over);
+        } else {
+            fly_directly_where_nearest(whole, goals, moments, job, sample, is_over);
         }
-        const Execution flight = execute(flights_.model(), *starts[i], whole.reference, goals, true, {&worlds[i]},
-                                         is_over, problem_.energy_budget_j);
-        samples[i].outcome = flight.outcome;
-        samples[i].min_clearance_m = flight.min_clearance_m;
-        const auto missed = std::find_if(flight.goals.begin(), flight.goals.end(),
-                                         [](const GoalVisit& visit) { return !visit.is_met; });
-        samples[i].goal = missed != flight.goals.end() ? static_cast<std::size_t>(missed - flight.goals.begin()) : 0;
     });
+}
+
+void ProblemWorlds::fly_directly(const Plan& whole, std::span<const Goal> goals, const FlightJob& job,
+                                 WorldSample& sample, const StopCondition& is_over) const {
+    const Execution flight = execute(flights_.model(), job.start, whole.reference, goals, true, {job.world}, is_over,
+                                     problem_.energy_budget_j);
+    sample.outcome = flight.outcome;
+    sample.min_clearance_m = flight.min_clearance_m;
+    const auto missed = std::ranges::find_if(flight.goals, [](const GoalVisit& visit) { return !visit.is_met; });
+    sample.goal = missed != flight.goals.end() ? static_cast<std::size_t>(missed - flight.goals.begin()) : 0;
+}
+
+void ProblemWorlds::fly_directly_where_nearest(const Plan& whole, std::span<const Goal> goals, const Plan& moments,
+                                               const FlightJob& job, WorldSample& sample,
+                                               const StopCondition& is_over) const {
+    constexpr double before_s = 2, after_s = 1;  // the loops settle in less
+    const auto tick_at = [&](std::size_t leg) { return moments.reference[leg].tick; };
+    const auto found = std::ranges::find_if(
+        job.legs, [&](const FlightLeg& leg) { return leg.flight.min_clearance_m <= sample.min_clearance_m; });
+    const auto nearest = static_cast<std::size_t>(found - job.legs.begin());
+    std::size_t first = nearest;
+    while (first > 0 && tick_at(nearest) - tick_at(first) < std::llround(before_s / whole.tick_s)) {
+        --first;
+    }
+    std::vector<ReferenceSegment> segments;
+    const std::int64_t end = tick_at(nearest + 1) + std::llround(after_s / whole.tick_s);
+    for (std::size_t i = first; i < job.legs.size() && tick_at(i) < end; ++i) {
+        segments.push_back(job.legs[i].segment);
+    }
+    const FlightPart part = execute_part(flights_.model(), first == 0 ? job.start : job.legs[first - 1].end, segments,
+                                         true, {job.world, tick_at(first)}, is_over);
+    sample.min_clearance_m = part.min_clearance_m;
+    sample.outcome = outcome_of(part.rejection);
+    sample.goal = static_cast<std::size_t>(
+        std::ranges::count_if(hover_ends(flights_.model(), whole.reference, goals),
+                              [&](std::size_t knot) { return whole.reference[knot].tick <= tick_at(nearest); }));
 }
 
 /// Adds flights in new worlds to a record, until it is known whether the plan passes. @throws WorkStopped
@@ -159,8 +217,8 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
     constexpr std::uint64_t chunk = 64;   // worlds side by side: a bad plan fails in the first of them
     constexpr int threads_of_chunk = 16;  // that it keeps busy; for more, chunks are flown that are likely to be wanted
     const auto chunks_at_once = static_cast<std::uint64_t>(std::max(1, threads_ / threads_of_chunk));
-    constexpr std::size_t flown_directly = 2;
-    std::deque<WorldFlight> flown;  // of the worlds after those of the record
+    constexpr std::size_t looked_at = 10;  // the worst that a certificate lists
+    std::deque<WorldFlight> flown;         // of the worlds after those of the record
     for (;;) {
         throw_if_over(is_over);
         if (counter) {
@@ -172,8 +230,8 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
                 return false;
             }
             // The map is not the last word where the flights came nearest.
-            std::vector<WorldSample> nearest = record.nearest_successes(flown_directly);
-            fly_directly(whole, visits, nearest, is_over);
+            std::vector<WorldSample> nearest = record.nearest_successes(looked_at);
+            look_closely(whole, visits, nearest, is_over);
             if (!record.replace(nearest)) {
                 return true;
             }

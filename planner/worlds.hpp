@@ -62,12 +62,20 @@ class DOWNWASH_EXPORT ProblemWorlds {
     [[nodiscard]] Certificate tested(const Plan& whole, std::size_t visits, std::uint64_t first_world,
                                      const StopCondition& is_over, const WorldCounter& counter,
                                      CertificateRecord record);
-    /// Flies a plan with direct aerodynamics in worlds of a certificate, and notes what comes of it.
-    void fly_directly(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
+    /// Flies a plan again in worlds in which it came nearest to an obstacle, and notes what comes of it: closely, and
+    /// in some of them around the nearest moment with direct aerodynamics.
+    void look_closely(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
                       const StopCondition& is_over);
+    /// @param job start and world   @param sample what comes of it
+    void fly_directly(const Plan& whole, std::span<const Goal> goals, const FlightJob& job, WorldSample& sample,
+                      const StopCondition& is_over) const;
+    /// @param job flown along the moments of the plan
+    void fly_directly_where_nearest(const Plan& whole, std::span<const Goal> goals, const Plan& moments,
+                                    const FlightJob& job, WorldSample& sample, const StopCondition& is_over) const;
 
     const Problem& problem_;
-    WorldFlights flights_;                       ///< with surfaces
+    WorldFlights flights_;                       ///< with surfaces; clearances are estimates
+    WorldFlights close_flights_;                 ///< the same with better clearances
     std::unique_ptr<WorldFlights> in_free_air_;  ///< in the planner's own model, where it knows of none
     int threads_;
     std::uint64_t screenings_ = 0;  ///< so far

@@ -226,6 +226,22 @@ void judge_goals(const FlightModel& model, std::span<const Goal> goals, const st
     }
 }
 
+/// Flies a segment tick by tick, with a row for each.
+/// @param state at its beginning, replaced by that at its end
+Rejection fly_directly(const FlightModel& model, const FlownWorld* world, std::int64_t first_tick,
+                       const ReferenceSegment& segment, simulation::FlightEffect& effect, const StopCondition& is_over,
+                       FlightState& state, Recorder& recorder) {
+    const auto after = [&](const FlightState& before, const ReferencePoint& at, const Given& given,
+                           const FlightState& next, const ReferencePoint& next_reference) {
+        if (recorder.ticks() % ticks_between_questions == 0) {
+            throw_if_over(is_over);
+        }
+        return recorder.after_tick(before, at, given, next, next_reference);
+    };
+    return simulation::FlightLoop(model.tick(), world, effect)
+        .fly(first_tick + recorder.ticks(), segment, state, after, dynamics::RefinedStep{});
+}
+
 Execution execute_with(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
                        std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over,
                        simulation::FlightEffect& effect) {
@@ -247,15 +263,9 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
         if (rejection != Rejection::none) {
             break;
         }
-        const auto after = [&](const FlightState& before, const ReferencePoint& at, const Given& given,
-                               const FlightState& next, const ReferencePoint& next_reference) {
-            if (recorder.ticks() % ticks_between_questions == 0) {
-                throw_if_over(is_over);
-            }
-            reference = next_reference;
-            return recorder.after_tick(before, at, given, next, next_reference);
-        };
-        rejection = loop.fly(in.first_tick + recorder.ticks(), segment, state, after, dynamics::RefinedStep{});
+        const std::int64_t begin = recorder.ticks();
+        rejection = fly_directly(model, world, in.first_tick, segment, effect, is_over, state, recorder);
+        reference = segment.at_tick(recorder.ticks() - begin);
     }
     const Touch* const touch = ends.size() == goals.size()
                                    ? touch_at(goals.back(), model.tick().plant, level_at(configuration_of(reference)))
@@ -366,6 +376,26 @@ Execution execute(const FlightModel& model, const FlightState& start, const std:
         execution.outcome = Outcome::over_budget;
     }
     return execution;
+}
+
+FlightPart execute_part(const FlightModel& model, const FlightState& start, std::span<const ReferenceSegment> segments,
+                        bool aero, const FlightWorld& in, const StopCondition& is_over) {
+    assert(!segments.empty());
+    const FlownWorld* const world = flown_world(model, in.world);
+    const std::unique_ptr<simulation::FlightEffect> effect = effect_of(model, aero);
+    Execution part;
+    part.aero = aero && model.has_effects();
+    part.min_clearance_m = std::numeric_limits<double>::infinity();
+    Recorder recorder(model, world, *effect, part);
+    FlightState state = start;
+    Rejection rejection = recorder.judge(state, segments.front().from(), true);
+    for (const ReferenceSegment& segment : segments) {
+        if (rejection != Rejection::none) {
+            break;
+        }
+        rejection = fly_directly(model, world, in.first_tick, segment, *effect, is_over, state, recorder);
+    }
+    return {rejection, part.min_clearance_m};
 }
 
 std::optional<FlightState> hovering_start(const FlightModel& model, const FlightState& start, bool aero,

@@ -108,6 +108,19 @@ struct Execution : FlightSums {
                                                 const StopCondition& is_over = {},
                                                 std::optional<double> energy_budget_j = {});
 
+/// How a part of a flight goes.
+struct FlightPart {
+    Rejection rejection = Rejection::none;
+    double min_clearance_m = 0;  ///< up to its end; infinity without obstacles
+};
+
+/// Flies some segments one after the other under the rules of execute(), goals aside.
+/// @param start vehicle at the beginning of the first one   @param segments at least one
+/// @throws WorkStopped when it is over before the flight ends
+[[nodiscard]] DOWNWASH_EXPORT FlightPart execute_part(const FlightModel& model, const FlightState& start,
+                                                      std::span<const ReferenceSegment> segments, bool aero,
+                                                      const FlightWorld& in, const StopCondition& is_over = {});
+
 /// Executes a plan for a single goal.
 [[nodiscard]] inline Execution execute(const FlightModel& model, const FlightState& start,
                                        const std::vector<ReferenceKnot>& knots, const Goal& goal, bool aero) {

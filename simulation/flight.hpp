@@ -16,7 +16,7 @@ struct SegmentFlight : FlightSums {
     Rejection rejection = Rejection::none;
     std::int64_t ticks = 0;         ///< simulated, the rejected one included
     double clearance_integral = 0;  ///< integral of clearance_density() over time [s/m], when measured
-    /// Least clearance on control ticks, when wanted [m]: exact in fly(); in a FlightPool to min_clearance_error_m,
+    /// Least clearance on control ticks, when wanted [m]: exact in fly(); in a FlightPool to the error in the rules,
     /// from the beginning of the job on.
     double min_clearance_m = std::numeric_limits<double>::infinity();
 };

@@ -195,14 +195,19 @@ class FlightLane {
                                  setting_->rules.margin_m)) {
             return Rejection::collision;
         }
-        if (setting_->rules.measures_clearance || !find_free_motion(pose)) {
+        const bool is_clearance_exact =
+            setting_->rules.finds_min_clearance && collisions.kind() == CollisionCheckerKind::own;
+        const bool is_free =
+            is_clearance_exact ? take_free_motion(clearance_m - setting_->rules.margin_m) : find_free_motion(pose);
+        if (setting_->rules.measures_clearance || !is_free) {
             look_after_every_tick();
             if (collisions.is_nearer_than(pose, setting_->rules.margin_m)) {
                 return Rejection::collision;
             }
         }
         if (setting_->rules.finds_min_clearance) {
-            limit_free_motion(std::max(clearance_m - min_clearance_m_, min_clearance_error_m(clearance_m)));
+            const double error_m = setting_->rules.finds_min_clearance->at_m(clearance_m);
+            limit_free_motion(std::max(clearance_m - min_clearance_m_, error_m));
         }
         if (setting_->rules.measures_clearance) {
             SegmentFlight& flight = job_->legs[leg_].flight;
@@ -212,13 +217,21 @@ class FlightLane {
         return Rejection::none;
     }
 
+    /// The robot may move so far from here before it is nearer than the margin. @return whether that is anything
+    bool take_free_motion(double motion_m) {
+        if (motion_m <= 2 * clearance_error_m) {
+            return false;
+        }
+        write(pose_of(state()), lanes_->anchor);
+        lanes_->free_motion_m[number_] = motion_m - clearance_error_m;
+        return true;
+    }
+
     bool find_free_motion(const PlanarPose& pose) {
         for (int level = std::max(0, level_ - 1); level < no_free_motion; ++level) {
             if (!setting_->model.collisions().is_nearer_than(pose, setting_->rules.margin_m + free_motions_m[level])) {
                 level_ = level;
-                write(pose_of(state()), lanes_->anchor);
-                lanes_->free_motion_m[number_] = free_motions_m[level] - clearance_error_m;
-                return true;
+                return take_free_motion(free_motions_m[level]);
             }
         }
         level_ = no_free_motion;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "downwash/base/bounds.hpp"
 
@@ -36,10 +37,16 @@ inline constexpr double unstable_error_m = 3.0;
     return std::max(2 * margin_m, 0.005);
 }
 
-/// By how much a FlightPool may overestimate the least clearance [m]: 5 %, and 5 mm where that is more.
-[[nodiscard]] constexpr double min_clearance_error_m(double clearance_m) noexcept {
-    return std::max(0.005, 0.05 * clearance_m);
-}
+/// By how much a FlightPool may overestimate the least clearance of a flight: a share of it, and a length where that is
+/// more.
+struct ClearanceError {
+    double share = 0.05;
+    double length_m = 0.005;
+
+    [[nodiscard]] constexpr double at_m(double clearance_m) const noexcept {
+        return std::max(length_m, share * clearance_m);
+    }
+};
 
 /// The rules of a planned flight.
 struct FlightRules {
@@ -49,9 +56,9 @@ struct FlightRules {
     double max_arm_error_rad = 0.35;    ///< arm angle from the reference (20 degrees)
     double max_saturation = 1;          ///< greatest demand on a rotor or the joint over its limit
     double max_pitch_rate_rad_s = std::numeric_limits<double>::infinity();  ///< largest pitch rate of the vehicle
-    std::function<bool()> is_over;     ///< polled now and then; true ends the flight as interrupted
-    bool measures_clearance = false;   ///< integrates clearance (slow), for the objective of that name
-    bool finds_min_clearance = false;  ///< whether every flight finds its least clearance, for certificates
+    std::function<bool()> is_over;    ///< polled now and then; true ends the flight as interrupted
+    bool measures_clearance = false;  ///< integrates clearance (slow), for the objective of that name
+    std::optional<ClearanceError> finds_min_clearance = {};  ///< how well every flight finds its least clearance
 };
 
 /// Integrand of the objective `clearance` [1/m].

@@ -34,6 +34,9 @@ std::string text_of(const Progress& progress) {
     }
     if (progress.worlds) {
         text += fmt::format("; certifying a plan: {} worlds, {} failed", *progress.worlds, progress.failures);
+        if (*progress.worlds > 0) {
+            text += fmt::format(": at most {:.1f} % so far", 100 * progress.failure_bound);
+        }
     }
     return text;
 }

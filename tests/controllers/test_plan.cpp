@@ -75,3 +75,21 @@ TEST_CASE("A plan that is held, or asked for more than it has, stays at its last
     }
     CHECK(Plan{}.followed_by(plan).reference.size() == 3);
 }
+
+TEST_CASE("A divided plan is the same reference with knots near to each other") {
+    const Plan plan = curved_plan();
+    const Plan parts = plan.divided(50);
+    REQUIRE(parts.reference.size() == 700 / 50 + 1);
+    for (std::size_t i = 1; i < parts.reference.size(); ++i) {
+        CHECK(parts.reference[i].tick - parts.reference[i - 1].tick == 50);
+    }
+    for (const std::int64_t tick : {0, 17, 300, 431, 699}) {
+        for (std::size_t axis = 0; axis < plan.axes.size(); ++axis) {
+            CHECK(parts.at(tick).position[axis] == Approx(plan.at(tick).position[axis]).margin(1e-12));
+            CHECK(parts.at(tick).velocity[axis] == Approx(plan.at(tick).velocity[axis]).margin(1e-11));
+        }
+    }
+    CHECK(plan.divided(290).reference.size() == 5);  // the knots of the plan stay
+    CHECK(plan.divided(290).reference[2].point == plan.reference[1].point);
+    CHECK(plan.divided(1000).reference.size() == 3);
+}

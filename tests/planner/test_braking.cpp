@@ -67,6 +67,39 @@ TEST_CASE("a plan has a stop at each knot and every half second, and no stop whe
     CHECK_FALSE(is_clearly_worse(stops, stops));
 }
 
+TEST_CASE("stops of a plan are the same whether the finder knows a plan with the same beginning or not") {
+    Problem problem = long_flight();
+    problem.uncertainty.emplace();
+    problem.planner.certify = false;
+    problem.planner.worlds = 3;
+    const Solution solution = solve(problem);
+    REQUIRE(solution.plan);
+    const auto model = make_flight_model(problem);
+    const auto finder = [&] {
+        return planning::StopFinder(problem, model, solution.map, planning::search_worlds(problem));
+    };
+    // Another way from the middle on.
+    Plan other = *solution.plan;
+    const std::int64_t middle = other.reference.back().tick / 2;
+    other = other.beginning(middle).followed_by(other.rest_after(middle));
+    other.reference.back().point.position[plane::z] -= 0.2;
+    planning::StopFinder knowing = finder();
+    const SafeStops first = knowing.along(*solution.plan);
+    for (const Plan& plan : {other, *solution.plan}) {
+        const SafeStops again = knowing.along(plan);
+        const SafeStops anew = finder().along(plan);
+        CHECK(again.share_without == anew.share_without);
+        REQUIRE(again.moments.size() == anew.moments.size());
+        for (std::size_t i = 0; i < anew.moments.size(); ++i) {
+            CHECK(again.moments[i].tick == anew.moments[i].tick);
+            CHECK(again.moments[i].duration_s == anew.moments[i].duration_s);
+            REQUIRE(again.moments[i].rest.has_value() == anew.moments[i].rest.has_value());
+            CHECK((!anew.moments[i].rest || at_rest(*again.moments[i].rest) == at_rest(*anew.moments[i].rest)));
+        }
+    }
+    CHECK(first.moments.size() > 5);
+}
+
 TEST_CASE("a cheaper plan that can be left for a hover for less of its time does not replace one that can for more") {
     const Problem problem = long_flight();
     StricterStops stricter(problem);

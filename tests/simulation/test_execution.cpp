@@ -84,6 +84,28 @@ TEST_CASE("a reference through a wall ends in a collision, or before it where a 
     CHECK(near.rows.back().clearance_m < 0.3 * problem.robot.rotors.radius_m + 0.01);
 }
 
+TEST_CASE("a part of a flight goes as it does in the whole flight, up to where it touches something") {
+    Problem problem = test::walled_problem();
+    problem.goal = test::configuration_goal(2, 2);
+    const auto model = make_flight_model(problem);
+    const auto through = from_start(problem, {2, 2, 1.57}, 1300);
+    const Plan parts = Plan{through, model->tick().tick_s}.divided(100);
+    const bool aero = GENERATE(true, false);
+    const Execution whole = flown(problem, through, aero);
+    const FlightState start = start_state(*model, problem.start);
+    const FlightPart all = execute_part(*model, start, parts.segments(), aero, {});
+    CHECK(outcome_of(all.rejection) == whole.outcome);
+    CHECK(all.min_clearance_m == Approx(whole.min_clearance_m).margin(1e-9));
+    const FlightPart begin = execute_part(*model, start, std::vector{parts.segment_to(1)}, aero, {});
+    CHECK(begin.rejection == Rejection::none);
+    CHECK(begin.min_clearance_m ==
+          Approx(std::min_element(whole.rows.begin(), whole.rows.begin() + 101,
+                                  [](const FlightRow& a, const FlightRow& b) { return a.clearance_m < b.clearance_m; })
+                     ->clearance_m)
+              .margin(1e-9));
+    CHECK_THROWS_AS(execute_part(*model, start, parts.segments(), aero, {}, [] { return true; }), WorkStopped);
+}
+
 TEST_CASE("a plan that ends elsewhere misses the goal, and so does one that nothing can follow") {
     const Problem problem = test::with_place(2, 2.5);
     const Execution elsewhere = flown(problem, from_start(problem, {1.5, 2.5, 1}, 1300));

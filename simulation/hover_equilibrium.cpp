@@ -1,0 +1,208 @@
+#include "downwash/simulation/hover_equilibrium.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "downwash/base/numbers.hpp"
+#include "downwash/controllers/reference_point.hpp"
+#include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/map_effect.hpp"
+
+namespace downwash {
+namespace {
+
+using Matrix = Eigen::MatrixXd;
+using Vector = Eigen::VectorXd;
+
+constexpr int all_numbers = number_count<double, FlightState>;
+
+/// Energy only grows; nothing depends on it.
+constexpr int energy_number =
+    static_cast<int>(offsetof(simulation::VehicleState<double>, plant.energy_j) / sizeof(double));
+
+}  // namespace
+
+struct HoverEquilibria::Impl {
+    Impl(const FlightModel& the_model, const AeroMap* map, const FlightState& start)
+        : model(the_model), reference(at_rest({start.plant.q[0], start.plant.q[1], start.plant.q[3]})) {
+        if (map != nullptr) {
+            maps = simulation::rotor_maps(model, *map);
+        }
+        begin(start);
+    }
+
+    /// One tick after another without noise and gusts.
+    template <class Use>
+    void with_tick(const FlownWorld& world, const Use& use) const {
+        const auto with = [&](simulation::FlightEffect&& effect) {
+            const simulation::FlightLoop loop(model.tick(), &world, effect);
+            use([&](const FlightState& state) {
+                controllers::Actuation<double> given{};
+                return loop.quiet_tick(state, reference, given);
+            });
+        };
+        if (maps) {
+            with(simulation::FlightEffectOf{simulation::MapEffect<double>(*maps)});
+        } else {
+            with(simulation::FlightEffectOf{simulation::NoEffect{}});
+        }
+    }
+
+    /// The vehicle after a hover in the nominal world, and what follows from its Jacobian there.
+    void begin(const FlightState& start) {
+        const FlownWorld quiet = without_noise(model.nominal_world());
+        with_tick(quiet, [&](const auto& tick) {
+            FlightState state = start;
+            state.world = memory_at_start(quiet, start.plant);
+            const auto ticks = std::llround(settling_before_start_s / model.tick().tick_s);
+            for (std::int64_t i = 0; i < ticks; ++i) {
+                state = tick(state);
+                if (!is_stable(state, reference)) {
+                    return;
+                }
+            }
+            state.plant.energy_j = 0;
+            linearise(tick, state);
+            if (!is_known) {
+                return;
+            }
+            is_known = settle(tick, state);
+            nominal = state;
+        });
+    }
+
+    /// Numbers that neither change nor matter are left out: those of rotors and memories that the vehicle lacks.
+    template <class Tick>
+    void linearise(const Tick& tick, const FlightState& at) {
+        std::vector<int> every;
+        for (int i = 0; i < all_numbers; ++i) {
+            if (i != energy_number) {
+                every.push_back(i);
+            }
+        }
+        used = every;
+        const Matrix all = jacobian(tick, at, tick(at));
+        used.clear();
+        for (std::size_t i = 0; i < every.size(); ++i) {
+            const auto k = static_cast<Eigen::Index>(i);
+            if (!all.row(k).isZero(0) || !all.col(k).isZero(0)) {
+                used.push_back(every[i]);
+            }
+        }
+        const Matrix own = jacobian(tick, at, tick(at));
+        newton = (Matrix::Identity(own.rows(), own.cols()) - own).inverse();
+        is_known = newton.allFinite() && find_measure(own);
+    }
+
+    /// How the numbers in use follow from those of the tick before, by differences.
+    template <class Tick>
+    [[nodiscard]] Matrix jacobian(const Tick& tick, const FlightState& at, const FlightState& next) const {
+        constexpr double step = 1e-6;
+        const auto size = static_cast<Eigen::Index>(used.size());
+        Matrix result(size, size);
+        for (Eigen::Index column = 0; column < size; ++column) {
+            FlightState changed = at;
+            const int i = used[static_cast<std::size_t>(column)];
+            set_number_at(changed, i, number_at<double>(at, i) + step);
+            const FlightState after = tick(changed);
+            result.col(column) = difference(after, next) / step;
+        }
+        return result;
+    }
+
+    [[nodiscard]] Vector difference(const FlightState& a, const FlightState& b) const {
+        Vector result(static_cast<Eigen::Index>(used.size()));
+        for (std::size_t i = 0; i < used.size(); ++i) {
+            result[static_cast<Eigen::Index>(i)] = number_at<double>(a, used[i]) - number_at<double>(b, used[i]);
+        }
+        return result;
+    }
+
+    /// A quadratic measure of disturbances that falls in every tick of the nominal world: x' P x with P - J' P J = Q,
+    /// the sum of J'^k Q J^k (Lyapunov), by doubling. False: they do not decay.
+    [[nodiscard]] bool find_measure(const Matrix& own) {
+        constexpr int most_doublings = 24;  // some years of hover
+        const auto size = own.rows();
+        measure = Matrix::Identity(size, size);
+        Matrix power = own;
+        for (int i = 0; i < most_doublings && power.cwiseAbs().maxCoeff() > 1e-12; ++i) {
+            measure += (power.transpose() * measure * power).eval();
+            power = (power * power).eval();
+            if (!measure.allFinite()) {
+                return false;
+            }
+        }
+        return power.cwiseAbs().maxCoeff() <= 1e-12;
+    }
+
+    /// Newton's method with the Jacobian of the nominal world. @return whether it came to a fixed point
+    template <class Tick>
+    [[nodiscard]] bool settle(const Tick& tick, FlightState& state) const {
+        constexpr int most_rounds = 40;
+        constexpr double enough = 1e-7;
+        for (int round = 0; round < most_rounds; ++round) {
+            const Vector change = newton * difference(tick(state), state);
+            if (!change.allFinite()) {
+                return false;
+            }
+            for (std::size_t i = 0; i < used.size(); ++i) {
+                set_number_at(state, used[i], number_at<double>(state, used[i]) + change[static_cast<Eigen::Index>(i)]);
+            }
+            if (change.cwiseAbs().maxCoeff() <= enough) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    /// Whether disturbances decay in a world, too: surely where the measure falls there as well, else by eigenvalues.
+    template <class Tick>
+    [[nodiscard]] bool is_attractive(const Tick& tick, const FlightState& at) const {
+        const Matrix own = jacobian(tick, at, tick(at));
+        if (!own.allFinite()) {
+            return false;
+        }
+        const Matrix fall = measure - own.transpose() * measure * own;
+        if (Eigen::LLT<Matrix>(fall).info() == Eigen::Success) {
+            return true;
+        }
+        constexpr double slack = 1e-6;  // of differences
+        const Eigen::EigenSolver<Matrix> modes(own, false);
+        return modes.info() == Eigen::Success && modes.eigenvalues().cwiseAbs().maxCoeff() < 1 - slack;
+    }
+
+    const FlightModel& model;
+    ReferencePoint reference;
+    std::optional<simulation::RotorMaps> maps;
+    bool is_known = false;   ///< whether the nominal world has an equilibrium
+    FlightState nominal{};   ///< that equilibrium
+    std::vector<int> used;   ///< numbers of a state that change or matter
+    Matrix newton, measure;  ///< (I - J)^-1; see find_measure()
+};
+
+HoverEquilibria::HoverEquilibria(const FlightModel& model, const AeroMap* map, const FlightState& start)
+    : impl_(std::make_unique<const Impl>(model, map, start)) {}
+
+HoverEquilibria::~HoverEquilibria() = default;
+
+std::optional<FlightState> HoverEquilibria::in(const FlownWorld& world) const {
+    if (!impl_->is_known) {
+        return std::nullopt;
+    }
+    std::optional<FlightState> found;
+    const FlownWorld quiet = without_noise(world);
+    impl_->with_tick(quiet, [&](const auto& tick) {
+        FlightState state = impl_->nominal;
+        if (!impl_->settle(tick, state) || !is_stable(state, impl_->reference) || !impl_->is_attractive(tick, state)) {
+            return;
+        }
+        state.plant.energy_j = 0;
+        found = state;
+    });
+    return found;
+}
+
+}  // namespace downwash
