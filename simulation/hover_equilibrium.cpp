@@ -1,6 +1,7 @@
 #include "downwash/simulation/hover_equilibrium.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -74,7 +75,8 @@ struct HoverEquilibria::Impl {
         });
     }
 
-    /// Numbers that neither change nor matter are left out: those of rotors and memories that the vehicle lacks.
+    /// Numbers that stay what they are, or only add up what nothing depends on, are left out: those of rotors and
+    /// integrators that the vehicle lacks.
     template <class Tick>
     void linearise(const Tick& tick, const FlightState& at) {
         std::vector<int> every;
@@ -88,7 +90,13 @@ struct HoverEquilibria::Impl {
         used.clear();
         for (std::size_t i = 0; i < every.size(); ++i) {
             const auto k = static_cast<Eigen::Index>(i);
-            if (!all.row(k).isZero(0) || !all.col(k).isZero(0)) {
+            Eigen::RowVectorXd from = all.row(k);
+            Vector to = all.col(k);
+            from[k] = to[k] = 0;
+            const bool stays = std::abs(all(k, k) - 1) < 1e-6;
+            if (from.isZero(0) && stays) {
+                constant.push_back(every[i]);
+            } else if (!to.isZero(0) || (!from.isZero(0) && !stays)) {
                 used.push_back(every[i]);
             }
         }
@@ -152,7 +160,9 @@ struct HoverEquilibria::Impl {
                 set_number_at(state, used[i], number_at<double>(state, used[i]) + change[static_cast<Eigen::Index>(i)]);
             }
             if (change.cwiseAbs().maxCoeff() <= enough) {
-                return true;
+                const FlightState next = tick(state);
+                return std::ranges::all_of(
+                    constant, [&](int i) { return number_at<double>(next, i) == number_at<double>(state, i); });
             }
         }
         return false;
@@ -177,10 +187,11 @@ struct HoverEquilibria::Impl {
     const FlightModel& model;
     ReferencePoint reference;
     std::optional<simulation::RotorMaps> maps;
-    bool is_known = false;   ///< whether the nominal world has an equilibrium
-    FlightState nominal{};   ///< that equilibrium
-    std::vector<int> used;   ///< numbers of a state that change or matter
-    Matrix newton, measure;  ///< (I - J)^-1; see find_measure()
+    bool is_known = false;      ///< whether the nominal world has an equilibrium
+    FlightState nominal{};      ///< that equilibrium
+    std::vector<int> used;      ///< numbers of a state that change and matter
+    std::vector<int> constant;  ///< numbers that stay what they are
+    Matrix newton, measure;     ///< (I - J)^-1; see find_measure()
 };
 
 HoverEquilibria::HoverEquilibria(const FlightModel& model, const AeroMap* map, const FlightState& start)

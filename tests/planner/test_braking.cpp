@@ -8,6 +8,7 @@
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/world_parameters.hpp"
 
 using namespace downwash;
 
@@ -75,9 +76,11 @@ TEST_CASE("stops of a plan are the same whether the finder knows a plan with the
     const Solution solution = solve(problem);
     REQUIRE(solution.plan);
     const auto model = make_flight_model(problem);
-    const auto finder = [&] {
-        return planning::StopFinder(problem, model, solution.map, planning::search_worlds(problem));
-    };
+    std::vector<FlownWorld> worlds;
+    for (const std::uint64_t index : {1, 2}) {
+        worlds.push_back(make_world(problem.robot, draw_world(*problem.uncertainty, problem.robot, 1, index)));
+    }
+    const auto finder = [&] { return planning::StopFinder(problem, model, solution.map, worlds); };
     // Another way from the middle on.
     Plan other = *solution.plan;
     const std::int64_t middle = other.reference.back().tick / 2;
