@@ -15,10 +15,10 @@
 namespace downwash {
 namespace {
 
-using Matrix = Eigen::MatrixXd;
-using Vector = Eigen::VectorXd;
-
 constexpr int all_numbers = number_count<double, FlightState>;
+
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, all_numbers, all_numbers>;
+using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, all_numbers, 1>;
 
 /// Energy only grows; nothing depends on it.
 constexpr int energy_number =
@@ -90,7 +90,7 @@ struct HoverEquilibria::Impl {
         used.clear();
         for (std::size_t i = 0; i < every.size(); ++i) {
             const auto k = static_cast<Eigen::Index>(i);
-            Eigen::RowVectorXd from = all.row(k);
+            Vector from = all.row(k).transpose();
             Vector to = all.col(k);
             from[k] = to[k] = 0;
             const bool stays = std::abs(all(k, k) - 1) < 1e-6;
@@ -102,7 +102,7 @@ struct HoverEquilibria::Impl {
         }
         const Matrix own = jacobian(tick, at, tick(at));
         newton = (Matrix::Identity(own.rows(), own.cols()) - own).inverse();
-        is_known = newton.allFinite() && find_measure(own);
+        is_known = newton.allFinite();
     }
 
     /// How the numbers in use follow from those of the tick before, by differences.
@@ -129,23 +129,6 @@ struct HoverEquilibria::Impl {
         return result;
     }
 
-    /// A quadratic measure of disturbances that falls in every tick of the nominal world: x' P x with P - J' P J = Q,
-    /// the sum of J'^k Q J^k (Lyapunov), by doubling. False: they do not decay.
-    [[nodiscard]] bool find_measure(const Matrix& own) {
-        constexpr int most_doublings = 24;  // some years of hover
-        const auto size = own.rows();
-        measure = Matrix::Identity(size, size);
-        Matrix power = own;
-        for (int i = 0; i < most_doublings && power.cwiseAbs().maxCoeff() > 1e-12; ++i) {
-            measure += (power.transpose() * measure * power).eval();
-            power = (power * power).eval();
-            if (!measure.allFinite()) {
-                return false;
-            }
-        }
-        return power.cwiseAbs().maxCoeff() <= 1e-12;
-    }
-
     /// Newton's method with the Jacobian of the nominal world. @return whether it came to a fixed point
     template <class Tick>
     [[nodiscard]] bool settle(const Tick& tick, FlightState& state) const {
@@ -168,19 +151,21 @@ struct HoverEquilibria::Impl {
         return false;
     }
 
-    /// Whether disturbances decay in a world, too: surely where the measure falls there as well, else by eigenvalues.
+    /// Whether disturbances decay: all eigenvalues of the numbers that matter to later ones are inside the unit circle.
     template <class Tick>
     [[nodiscard]] bool is_attractive(const Tick& tick, const FlightState& at) const {
-        const Matrix own = jacobian(tick, at, tick(at));
-        if (!own.allFinite()) {
+        constexpr double slack = 1e-6;  // of differences
+        const Matrix all = jacobian(tick, at, tick(at));
+        if (!all.allFinite()) {
             return false;
         }
-        const Matrix fall = measure - own.transpose() * measure * own;
-        if (Eigen::LLT<Matrix>(fall).info() == Eigen::Success) {
-            return true;
+        std::vector<Eigen::Index> kept;
+        for (Eigen::Index i = 0; i < all.cols(); ++i) {
+            if (!all.col(i).isZero(0)) {
+                kept.push_back(i);
+            }
         }
-        constexpr double slack = 1e-6;  // of differences
-        const Eigen::EigenSolver<Matrix> modes(own, false);
+        const Eigen::EigenSolver<Matrix> modes(all(kept, kept), false);
         return modes.info() == Eigen::Success && modes.eigenvalues().cwiseAbs().maxCoeff() < 1 - slack;
     }
 
@@ -191,7 +176,7 @@ struct HoverEquilibria::Impl {
     FlightState nominal{};      ///< that equilibrium
     std::vector<int> used;      ///< numbers of a state that change and matter
     std::vector<int> constant;  ///< numbers that stay what they are
-    Matrix newton, measure;     ///< (I - J)^-1; see find_measure()
+    Matrix newton;              ///< (I - J)^-1
 };
 
 HoverEquilibria::HoverEquilibria(const FlightModel& model, const AeroMap* map, const FlightState& start)
