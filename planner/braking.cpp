@@ -170,10 +170,11 @@ std::optional<Braking::Stop> Braking::best_stop(const Start& from, const std::ve
 std::vector<std::optional<Braking::Stop>> Braking::best_stops(std::vector<Moment> moments,
                                                               const StopCondition& is_over) {
     std::vector<Tries> tries;
+    tries.reserve(moments.size());
     for (Moment& moment : moments) {
         tries.push_back(all_tries(std::move(moment)));
     }
-    for (const std::size_t count : {1, 2}) {
+    for (const std::size_t count : {1U, 2U}) {
         throw_if_over(is_over);
         std::vector<Batch> batches;
         std::optional<Bounds> places;
