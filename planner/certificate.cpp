@@ -58,12 +58,13 @@ FailureInterval failure_interval(std::uint64_t failures, std::uint64_t worlds, d
 }
 
 CertificateTest::CertificateTest(double max_failure_probability, double confidence, std::uint64_t attempt) {
-    constexpr double first_share = 0.75;
+    constexpr double first_attempt = 2.0 / 3;
+    constexpr double first_stage = 3.0 / 4;  // the two multiply to the half that one end of failure_interval() has
     const auto a = static_cast<double>(attempt);
-    double left = (1 - confidence) * (attempt == 1 ? first_share : (1 - first_share) / (a * (a - 1)));
+    double left = (1 - confidence) * (attempt == 1 ? first_attempt : (1 - first_attempt) / (a * (a - 1)));
     std::uint64_t worlds = 1;
     for (std::uint64_t failures = 0; failures <= most_failures; ++failures) {
-        const double alpha = failures < most_failures ? first_share * left : left;
+        const double alpha = failures < most_failures ? first_stage * left : left;
         left -= alpha;
         // The probability falls with the number of worlds: double it until it is enough, then halve what is between.
         const auto is_enough = [&](std::uint64_t number) {

@@ -55,8 +55,9 @@ struct Certificate {
 
 /// When a plan passes: a test in stages. A plan passes stage k with at most k failures in stage_worlds(k); with more
 /// failures than stages it fails. All plans of a search together pass by luck with probability 1 - confidence at most:
-/// the first attempt gets three quarters of it, attempt a > 1 a quarter of 1 / (a (a - 1)); and each stage three
-/// quarters of what is left of that. These weights are fixed before any flight: docs/model.md 9 has the proof.
+/// the first attempt gets two thirds of it, attempt a > 1 a third of 1 / (a (a - 1)); and each stage three quarters of
+/// what is left of that. These weights are fixed before any flight: docs/model.md 9 has the proof. No stage gets more
+/// than half of 1 - confidence, so the failure_interval() of a plan that passes never exceeds max_failure_probability.
 class DOWNWASH_EXPORT CertificateTest {
  public:
     static constexpr std::uint64_t most_failures = 3;
