@@ -2,7 +2,9 @@
 
 // Private to aeromap.
 
-#include <array>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "downwash/effects/effect_curve.hpp"
@@ -21,13 +23,35 @@ class CurveMean {
     /// radius k in the middle.
     [[nodiscard]] double operator()(double one, double other) const;
 
+    /// Over a shorter range the middle says as much as the integral, and more exactly.
+    static constexpr double short_range = 1e-3;
+
+    /// The integral of k from the cap, or from 0 without one, to a distance in radii; negative before the cap.
+    [[nodiscard]] double integral_to(double distance) const noexcept {
+        const double beyond = distance - start_;
+        if (beyond <= 0) {
+            return start_factor_ * beyond;
+        }
+        if (beyond >= reach) {
+            const double change = last_factor_ - 1;
+            const double last = start_ + reach;
+            return last_integral_ + (beyond - reach) + change * last * (1 - last / distance);
+        }
+        const double place = std::sqrt(beyond / reach) * intervals;
+        const Piece& piece = pieces_[std::min(static_cast<std::uint32_t>(place), intervals - 1)];
+        const double s = (beyond - piece.low) / piece.width;
+        return piece.integral + s * (piece.slope + s * (piece.bend + s * piece.twist));
+    }
+
  private:
+    static constexpr double reach = 16;  ///< of the table, in radii; farther out k falls like one over the square
+    static constexpr std::uint32_t intervals = 1024;
+
     /// A stretch of the table: the integral is integral + s (slope + s (bend + s twist)) at the share s of its width.
     struct Piece {
         double low, width;  ///< distances beyond the start
         double integral, slope, bend, twist;
     };
-    [[nodiscard]] double integral_to(double distance) const noexcept;
 
     EffectCurve curve_;
     double start_;               ///< before it k is constant
