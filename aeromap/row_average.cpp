@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "downwash/aeromap/chord_envelope.hpp"
@@ -23,9 +24,9 @@ constexpr double allowed_doubt = 5e-4;
 constexpr double last_doubt = 1e-3;
 /// Where all surfaces over or under the disc change K by less, a level is enough; up to twice this it counts for less
 /// and less.
-constexpr std::array<double, row_levels> low_stake{0.001, 0.006, infinity, infinity};
+constexpr std::array<double, row_levels> low_stake{0.001, infinity, infinity};
 /// Where they change K by more, nothing may lie between two rows.
-constexpr std::array<double, row_levels> passing_stake{infinity, infinity, 0.025, 0.075};
+constexpr std::array<double, row_levels> passing_stake{infinity, 0.01, 0.06};
 
 /// The area of the unit disc to the left of a line at a distance from its middle, less pi / 2.
 class SegmentArea {
@@ -71,16 +72,17 @@ class Excess {
  public:
     explicit Excess(const DiscQuery& query) : query_(query), per_unit_(1 / query.unit_m) {}
 
-    void add(double low_m, double high_m, double gap_low_m, double gap_high_m) {
-        const double length_m = high_m - low_m;
+    /// @param per_slope how far along the piece the gap grows by as much
+    void add(double length_m, double gap_low_m, double gap_high_m, double per_slope) {
+        const double one_m = std::max(0.0, gap_low_m);
+        const double other_m = std::max(0.0, gap_high_m);
         if (query_.mean == nullptr) {
-            sum_ += length_m * (mean_factor(query_, gap_low_m, gap_high_m) - 1);
+            sum_ += length_m * (mean_factor(query_, one_m, other_m) - 1);
             return;
         }
-        const double one = gap_low_m * per_unit_;
-        const double other = gap_high_m * per_unit_;
-        const double range = other - one;
-        if (std::abs(range) < CurveMean::short_range) {
+        const double one = one_m * per_unit_;
+        const double other = other_m * per_unit_;
+        if (std::abs(other - one) < CurveMean::short_range) {
             const double middle = 0.5 * (one + other);
             if (middle != level_) {  // floors and ceilings are one height for many pieces
                 level_ = middle;
@@ -92,7 +94,7 @@ class Excess {
         const double before = std::abs(one - last_) < same ? last_integral_ : query_.mean->integral_to(one);
         last_ = other;
         last_integral_ = query_.mean->integral_to(other);
-        sum_ += length_m * ((last_integral_ - before) / range - 1);
+        sum_ += (last_integral_ - before) * (query_.unit_m * per_slope) - length_m;
     }
 
     /// The sum since the last time.
@@ -108,46 +110,42 @@ class Excess {
     double last_ = -1, last_integral_ = 0;
 };
 
-/// How much an average over rows may be off, from how they differ from their neighbours. Midpoints of strips are off by
-/// 1/24 of the second difference where rows change smoothly, by up to 1/8 of it where their change breaks, and by up to
+/// How much a sum over rows may be off, from how they differ from their neighbours. Midpoints of strips are off by 1/24
+/// of the second difference where strips change smoothly, by up to 1/8 of it where their change breaks, and by up to
 /// half the step where they jump: then two second differences of opposite signs follow each other. Breaks and jumps
 /// are off either way, so that their squares add up.
-class RowDoubt {
- public:
-    /// @param mean,weight of the next row, each in any unit
-    void add(double mean, double weight) noexcept {
-        if (rows_ >= 2) {
-            // The least weight, so that a row that has just begun counts for nothing.
-            const double bend = std::min({weight, weights_[0], weights_[1]}) * (mean - 2 * means_[0] + means_[1]);
-            smooth_ += bend;
-            breaks_ += bend * bend;
-            jumps_ += std::max(0.0, -bend * last_bend_);
-            last_bend_ = bend;
-        }
-        means_ = {mean, means_[0]};
-        weights_ = {weight, weights_[0]};
-        ++rows_;
-    }
+/// @param deviations of the strips' integrals from the disc's mean times their areas, one after the other
+double doubt_of(std::span<const double> deviations) {
+    constexpr double of_smooth = 1.0 / 24;
+    constexpr double of_break = 0.0625;
+    constexpr double of_jump = 0.43;
+    std::array<double, 2> before{};  // the last one first; there is nothing beyond the disc
+    double last_bend = 0;
+    double smooth = 0;
+    double breaks = 0;
+    double jumps = 0;
+    const auto add = [&](double deviation) {
+        const double bend = deviation - 2 * before[0] + before[1];
+        smooth += bend;
+        breaks += bend * bend;
+        jumps += std::max(0.0, -bend * last_bend);
+        last_bend = bend;
+        before = {deviation, before[0]};
+    };
+    std::for_each(deviations.begin(), deviations.end(), add);
+    add(0);
+    add(0);
+    return std::sqrt(of_smooth * of_smooth * smooth * smooth + of_break * of_break * breaks +
+                     of_jump * of_jump * jumps);
+}
 
-    [[nodiscard]] double value() const noexcept {
-        constexpr double of_smooth = 1.0 / 24;
-        constexpr double of_break = 0.0625;
-        constexpr double of_jump = 0.43;
-        return std::sqrt(of_smooth * of_smooth * smooth_ * smooth_ + of_break * of_break * breaks_ +
-                         of_jump * of_jump * jumps_);
-    }
-
- private:
-    int rows_ = 0;
-    std::array<double, 2> means_{}, weights_{};  ///< of the rows before, the last one first
-    double last_bend_ = 0;
-    double smooth_ = 0, breaks_ = 0, jumps_ = 0;
-};
+/// More rows than these cross no disc.
+constexpr std::size_t max_rows = 2 * RowLattice::rows_in_radius.back() + 4;
 
 /// What the rows of one level say.
 struct RowSum {
     double excess;  ///< of the average over 1
-    double doubt;   ///< see RowDoubt
+    double doubt;   ///< see doubt_of()
 };
 
 /// Empty where something is in the slab over or under the disc.
@@ -169,7 +167,9 @@ std::optional<RowSum> sum_over(const DiscQuery& query, const SurfaceRows& rows, 
     const double half_of_area = 0.5 * r * r / spacing;
     double area_before = -0.5 * pi;
     double sum = 0;
-    RowDoubt doubt;
+    std::array<double, max_rows> strips{};
+    std::array<double, max_rows> integrals{};
+    std::size_t count = 0;
     bool is_passing = false;
     for (std::int64_t row = first; row <= last; ++row) {
         const double edge = edge_before + static_cast<double>(row - first + 1) * step;
@@ -185,15 +185,21 @@ std::optional<RowSum> sum_over(const DiscQuery& query, const SurfaceRows& rows, 
         }
         is_passing = is_passing || (may_be_passed && rows.is_passed_by(row, u - half, u + half));
         rows.visit(row, u - half, u + half, query.hub_m[2],
-                   [&excess](double low, double high, double gap_low, double gap_high) {
-                       excess.add(low, high, gap_low, gap_high);
+                   [&excess](double length, double gap_low, double gap_high, double per_slope) {
+                       excess.add(length, gap_low, gap_high, per_slope);
                    });
         const double integral = excess.taken();
         sum += integral;
-        doubt.add(integral / half, strip);
+        strips[count] = strip;
+        integrals[count++] = integral;
+    }
+    const double mean = sum / pi;  // of all strips, whose areas add up to pi
+    for (std::size_t i = 0; i < count; ++i) {
+        integrals[i] -= mean * strips[i];
     }
     const double share_of_disc = spacing / (pi * r * r);
-    return RowSum{share_of_disc * sum, is_passing ? infinity : doubt.value() / (2 * pi)};
+    return RowSum{share_of_disc * sum,
+                  is_passing ? infinity : share_of_disc * doubt_of(std::span(integrals).first(count))};
 }
 
 /// 0 up to `low`, 1 from `high` on, smooth between.

@@ -86,6 +86,7 @@ class RowCuts {
     }
 
     void note_outline(std::size_t part) {
+        constexpr double negligible_share = 5e-4;  // of the disc
         RowWindow extent = nothing;
         const ShadowOutline outline = shadow_outline(scene_, part);
         for (const OutlineSegment& edge : outline.segments) {
@@ -99,13 +100,14 @@ class RowCuts {
             include(extent, u - reach, v - reach);
             include(extent, u + reach, v + reach);
         }
-        note(extent);
+        note(extent, 3 * negligible_share * lattice_.radius_m * lattice_.radius_m);
     }
 
-    /// What is narrower than the distance of rows and longer may lie between two of them.
-    void note(const RowWindow& extent) {
-        const double spacing = lattice_.spacing_m();
-        if (!(extent.v_m.high - extent.v_m.low < spacing && extent.u_m.high - extent.u_m.low > 2 * spacing)) {
+    /// What is narrower than the distance of rows may lie between two of them.
+    /// @param least_m2 of the rectangle around it; less is negligible
+    void note(const RowWindow& extent, double least_m2) {
+        const double width_m = extent.v_m.high - extent.v_m.low;
+        if (!(width_m < lattice_.spacing_m() && width_m * (extent.u_m.high - extent.u_m.low) > least_m2)) {
             return;
         }
         for (std::int64_t row = lattice_.row_before(extent.v_m.low); row <= lattice_.row_before(extent.v_m.high);
@@ -157,8 +159,8 @@ class RowCuts {
             v.low >= window_.v_m.high) {
             return;
         }
-        if (face.corner_count == 3) {
-            note(extent);
+        if (face.corner_count == 3 && u.high - u.low > 2 * lattice_.spacing_m()) {  // smaller ones have neighbours
+            note(extent, 0);
         }
         const std::int64_t from = std::max(lattice_.row_before(std::max(v.low, window_.v_m.low)), first_row_);
         const std::int64_t last = std::min(lattice_.row_before(std::min(v.high, window_.v_m.high)),
@@ -428,6 +430,9 @@ SurfaceRows::SurfaceRows(const Scene& scene, std::span<const std::uint32_t> part
         passed_by_.add_row(cuts.passed_by(row));
     }
     starts_.push_back(static_cast<std::uint32_t>(pieces_.size()));
+    for (Piece& piece : pieces_) {
+        piece.per_slope = -1 / piece.line.slope;
+    }
     pieces_.shrink_to_fit();
 }
 

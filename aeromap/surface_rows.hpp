@@ -24,7 +24,7 @@ struct RowLattice {
     int level;        ///< 0 to row_levels - 1: how close the lines are
 
     /// Lines in a radius, by level.
-    static constexpr std::array<int, 4> rows_in_radius{3, 8, 16, 48};
+    static constexpr std::array<int, 3> rows_in_radius{3, 8, 32};
 
     [[nodiscard]] double spacing_m() const noexcept {
         return radius_m / rows_in_radius[static_cast<std::size_t>(level)];
@@ -78,8 +78,9 @@ class SurfaceRows {
     [[nodiscard]] bool has_blocked() const noexcept { return !blocked_.all.empty(); }
     [[nodiscard]] bool has_passed_by() const noexcept { return !passed_by_.all.empty(); }
 
-    /// Calls `use(low, high, gap_low, gap_high)` with each straight piece of the first surface over a stretch of a row:
-    /// from where to where it goes, and its gaps from the hub's plane there. Nothing where there is no surface.
+    /// Calls `use(length, gap_low, gap_high, per_slope)` with each straight piece of the first surface over a stretch
+    /// of a row: how long it is, its gaps from the hub's plane at both ends, and how far along the row the gap grows by
+    /// as much; infinite for a level piece. Nothing where there is no surface.
     template <class Use>
     void visit(std::int64_t row, double low_m, double high_m, double hub_z_m, const Use& use) const {
         const std::size_t i = index(row);
@@ -93,7 +94,7 @@ class SurfaceRows {
             const double low = std::max(piece.low, low_m);
             const double high = std::min(piece.high, high_m);
             if (low < high) {
-                use(low, high, std::max(0.0, hub - piece.line.at(low)), std::max(0.0, hub - piece.line.at(high)));
+                use(high - low, hub - piece.line.at(low), hub - piece.line.at(high), piece.per_slope);
             }
         }
     }
@@ -108,6 +109,7 @@ class SurfaceRows {
     struct Piece {
         double low, high;
         Line line;
+        double per_slope = 0;  ///< of the gap: -1 / line.slope
     };
 
  private:

@@ -17,8 +17,8 @@ class RayEffect {
  public:
     /// nullptr where the judge takes the direct evaluation of the model: among few parts, and where K depends on more
     /// than what is over and under the disc
-    [[nodiscard]] static std::shared_ptr<const RayEffect> made_for(const std::vector<Obstacle>& obstacles,
-                                                                   std::shared_ptr<const FlightModel> model);
+    [[nodiscard]] DOWNWASH_EXPORT static std::shared_ptr<const RayEffect> made_for(
+        const std::vector<Obstacle>& obstacles, std::shared_ptr<const FlightModel> model);
 
     /// Among fewer parts there is none.
     static constexpr std::size_t many_parts = 2048;
