@@ -35,6 +35,16 @@ CurveMean::CurveMean(const EffectCurve& curve)
             {low, width, last_integral_, slope, 3 * rise - 2 * slope - last_slope, slope + last_slope - 2 * rise});
         last_integral_ += rise;
     }
+    quick_.reserve(quick_steps);
+    for (std::int32_t i = 0; i < quick_steps; ++i) {
+        constexpr double step = 1.0 / steps_in_radius;
+        const double low = start_ + i * step;
+        const double integral = integral_to(low);
+        const double rise = integral_to(low + step) - integral;
+        const double slope = step * curve(low);
+        const double last_slope = step * curve(low + step);
+        quick_.push_back({integral, slope, 3 * rise - 2 * slope - last_slope, slope + last_slope - 2 * rise});
+    }
 }
 
 double CurveMean::operator()(double one, double other) const {

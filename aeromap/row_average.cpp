@@ -91,9 +91,9 @@ class Excess {
             sum_ += length_m * level_excess_;
             return;
         }
-        const double before = std::abs(one - last_) < same ? last_integral_ : query_.mean->integral_to(one);
+        const double before = std::abs(one - last_) < same ? last_integral_ : query_.mean->quick_integral_to(one);
         last_ = other;
-        last_integral_ = query_.mean->integral_to(other);
+        last_integral_ = query_.mean->quick_integral_to(other);
         sum_ += (last_integral_ - before) * (query_.unit_m * per_slope) - length_m;
     }
 
