@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/effects/effect_curve.hpp"
 
 namespace downwash {
@@ -18,7 +19,7 @@ namespace downwash {
 class CurveMean {
  public:
     /// @pre curve.falls_with_distance() and not curve.depends_on_wall()
-    explicit CurveMean(const EffectCurve& curve);
+    DOWNWASH_EXPORT explicit CurveMean(const EffectCurve& curve);
 
     /// Mean of k between two distances in radii, in either order; at least 0 and finite. Off by less than 1e-6 up to
     /// `reach` beyond the cap and by less than 1e-4 where a range reaches farther; over less than a thousandth of a

@@ -51,7 +51,7 @@ std::shared_ptr<const RayEffect> RayEffect::made_for(const std::vector<Obstacle>
         !is_of_one_disc(effect.ceiling())) {
         return nullptr;
     }
-    return std::make_shared<const RayEffect>(VerticalRays(obstacles, effect.rotor_radius_m()), std::move(model));
+    return std::make_shared<const RayEffect>(VerticalRays(obstacles, 0.25 * effect.rotor_radius_m()), std::move(model));
 }
 
 RayEffect::RayEffect(VerticalRays rays, std::shared_ptr<const FlightModel> model)
@@ -75,13 +75,12 @@ SidedFactor<double> RayEffect::at_rotor(int rotor, Planar hub_m) const {
 
 RayEffect::Tangent RayEffect::tangent(int rotor, Planar hub_m) const {
     const double step_m = 0.05 * model_->effect(rotor).rotor_radius_m();
+    const SidedFactor<double> here = at_rotor(rotor, hub_m);
     const auto slope = [&](Planar step) {
-        const auto ahead = at_rotor(rotor, hub_m + step);
-        const auto behind = at_rotor(rotor, hub_m - step);
-        return SidedFactor<double>{(ahead.all - behind.all) / (2 * step_m),
-                                   (ahead.above - behind.above) / (2 * step_m)};
+        const SidedFactor<double> there = at_rotor(rotor, hub_m + step);
+        return SidedFactor<double>{(there.all - here.all) / step_m, (there.above - here.above) / step_m};
     };
-    return {hub_m, at_rotor(rotor, hub_m), slope({step_m, 0}), slope({0, step_m})};
+    return {hub_m, here, slope({step_m, 0}), slope({0, step_m})};
 }
 
 }  // namespace downwash::judge

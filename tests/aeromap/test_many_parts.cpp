@@ -183,6 +183,38 @@ TEST_CASE("Over a level deck of a thousand triangles or of a hundred thousand K 
     }
 }
 
+TEST_CASE("Whatever the direction of an edge and wherever it crosses the disc, rows are within their bound") {
+    test::Random random(13);
+    const EffectCurve curve(EffectModel::cheeseman_bennett, 2);
+    const CurveMean mean(curve);
+    double worst = 0;
+    int by_rows = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const double angle = random.uniform(-1.6, 1.6);
+        const Vector3 across{std::sin(angle), -std::cos(angle), 0};
+        std::vector<Obstacle> obstacles{{"", Box{{6, 6, 1}}, {3 * across[0], 3 * across[1], -0.5}, {0, 0, angle}}};
+        if (i % 3 == 0) {
+            obstacles.push_back({"",
+                                 Box{{0.3, 0.2, 1}},
+                                 {random.uniform(-0.2, 0.2), random.uniform(-0.2, 0.2), -random.uniform(0.5, 0.6)},
+                                 {0, 0, random.uniform(-3, 3)}});
+        }
+        const DirectEffect exact = effect_of(obstacles);  // level faces: closed forms
+        const RowColumns columns(exact.scene(), radius);
+        const double beside = random.uniform(-1.1, 1.1) * radius;
+        const double along = random.uniform(-2, 2);
+        const Vector3 hub{-beside * across[0] - along * across[1], -beside * across[1] + along * across[0],
+                          random.uniform(0.31, 0.8) * radius};
+        const DiscQuery query{exact.scene(), hub, radius, Side::below, curve, radius, &mean};
+        if (const auto average = row_average(query, columns)) {
+            worst = std::max(worst, std::abs(*average - exact.factors(hub).ground));
+            ++by_rows;
+        }
+    }
+    CHECK(worst < rows_error);
+    CHECK(by_rows > 1700);
+}
+
 TEST_CASE("Over and under a rough deck K agrees with the evaluation triangle by triangle and with counted rays") {
     test::Random random(12);
     for (const double bumps_m : {0.05, 0.3}) {
