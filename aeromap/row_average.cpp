@@ -24,7 +24,7 @@ constexpr double allowed_doubt = 5e-4;
 constexpr double last_doubt = 1e-3;
 /// Where all surfaces over or under the disc change K by less, a level is enough; up to twice this it counts for less
 /// and less.
-constexpr std::array<double, row_levels> low_stake{0.001, infinity, infinity};
+constexpr std::array<double, row_levels> low_stake{0.004, infinity, infinity};
 /// Where they change K by more, nothing may lie between two rows.
 constexpr std::array<double, row_levels> passing_stake{infinity, 0.01, 0.06};
 
@@ -253,6 +253,9 @@ std::optional<double> row_average(const DiscQuery& query, const RowColumns& colu
             continue;
         }
         const auto rows = columns.rows(*column, u, v, query.side, level, *slab);
+        if (const std::optional<double> gap_m = rows->level_gap_m(z)) {
+            return query.factor(*gap_m);
+        }
         const std::optional<RowSum> sum = sum_over(query, *rows, u, v, stake > passing_stake[i]);
         if (!sum) {
             return {};

@@ -434,6 +434,18 @@ SurfaceRows::SurfaceRows(const Scene& scene, std::span<const std::uint32_t> part
         piece.per_slope = -1 / piece.line.slope;
     }
     pieces_.shrink_to_fit();
+    level_rise_m_ = level_rise_m(window);
+}
+
+/// That of the only piece in every row, where they are all level, at one height, and go through the window.
+std::optional<double> SurfaceRows::level_rise_m(const RowWindow& window) const {
+    const std::size_t rows = starts_.size() / buckets;
+    const bool is_it = pieces_.size() == rows && blocked_.all.empty() &&
+                       std::all_of(pieces_.begin(), pieces_.end(), [&](const Piece& piece) {
+                           return piece.line.slope == 0 && piece.line.rise == pieces_.front().line.rise &&
+                                  piece.low <= window.u_m.low && piece.high >= window.u_m.high;
+                       });
+    return is_it ? std::optional(pieces_.front().line.rise) : std::nullopt;
 }
 
 void SurfaceRows::Stretches::add_row(const std::vector<Interval>& row) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -99,6 +100,12 @@ class SurfaceRows {
         }
     }
 
+    /// The gap of a hub from the one level surface that is all there is in the window; empty if it is not.
+    [[nodiscard]] std::optional<double> level_gap_m(double hub_z_m) const noexcept {
+        return level_rise_m_ ? std::optional(std::max(0.0, (is_below_ ? hub_z_m : -hub_z_m) - *level_rise_m_))
+                             : std::nullopt;
+    }
+
     [[nodiscard]] std::size_t bytes() const noexcept;
 
     /// A straight surface along a row. Its rise is the height towards the hubs: upwards, if these are above.
@@ -134,6 +141,7 @@ class SurfaceRows {
         return static_cast<std::size_t>(row - first_row_);
     }
     void add_starts(std::size_t first);
+    [[nodiscard]] std::optional<double> level_rise_m(const RowWindow& window) const;
 
     RowLattice lattice_;
     bool is_below_;
@@ -143,6 +151,7 @@ class SurfaceRows {
     std::vector<Piece> pieces_;          ///< of one row after the other, along each
     std::vector<std::uint32_t> starts_;  ///< first piece that reaches into a bucket; behind the last one, the count
     Stretches blocked_, passed_by_;
+    std::optional<double> level_rise_m_;
 };
 
 }  // namespace downwash
