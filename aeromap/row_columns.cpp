@@ -13,8 +13,9 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Discs in the flyable area are 0.3 radii away from everything, unless a setting says otherwise.
 constexpr double slab_radii = 0.25;
-/// Discs reach so far around their hubs; more than 1, so that rounding leaves no row out.
-constexpr double reach_radii = 1.001;
+/// Discs reach so far around their hubs, up to the middles of the rows at their rims. A little more, so that rounding
+/// leaves none out.
+constexpr double reach_radii = 1.001 + 0.5 / RowLattice::rows_in_radius.front();
 
 RowWindow grown(const RowWindow& window, double by_m) {
     return {{window.u_m.low - by_m, window.u_m.high + by_m}, {window.v_m.low - by_m, window.v_m.high + by_m}};
