@@ -23,20 +23,6 @@ const std::vector<Planar>& disc_points() {
     return points;
 }
 
-std::size_t part_count(const std::vector<Obstacle>& obstacles) {
-    std::size_t count = 0;
-    for (const Obstacle& obstacle : obstacles) {
-        if (const auto* mesh = std::get_if<Mesh>(&obstacle.shape)) {
-            count += mesh->surface->triangles.size();
-        } else if (const auto* octomap = std::get_if<Octomap>(&obstacle.shape)) {
-            count += octomap->tree->cubes.size();
-        } else {
-            ++count;
-        }
-    }
-    return count;
-}
-
 /// K of a side is the mean of a curve over one disc.
 bool is_of_one_disc(const EffectCurve& curve) {
     return !is_multirotor(curve.effect().model) && !curve.depends_on_wall();
@@ -47,7 +33,7 @@ bool is_of_one_disc(const EffectCurve& curve) {
 std::shared_ptr<const RayEffect> RayEffect::made_for(const std::vector<Obstacle>& obstacles,
                                                      std::shared_ptr<const FlightModel> model) {
     const DirectEffect& effect = model->effect(0);
-    if (part_count(obstacles) < many_parts || effect.settings().map || !is_of_one_disc(effect.ground()) ||
+    if (model->scene().part_count() <= many_parts || effect.settings().map || !is_of_one_disc(effect.ground()) ||
         !is_of_one_disc(effect.ceiling())) {
         return nullptr;
     }

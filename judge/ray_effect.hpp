@@ -20,7 +20,7 @@ class RayEffect {
     [[nodiscard]] DOWNWASH_EXPORT static std::shared_ptr<const RayEffect> made_for(
         const std::vector<Obstacle>& obstacles, std::shared_ptr<const FlightModel> model);
 
-    /// Among fewer parts there is none.
+    /// There is one among more parts: primitives, triangles, and boxes of an octree's cubes that are merged.
     static constexpr std::size_t many_parts = 2048;
 
     /// K by side of a level rotor with its hub there in the plane [m].
