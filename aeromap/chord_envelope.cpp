@@ -10,7 +10,8 @@ namespace {
 /// Lines over one piece of a chord change places at most as often; more is rounding.
 constexpr int max_splits = 16;
 
-/// The mean of the factor over a straight slope from one distance to another.
+}  // namespace
+
 double mean_factor(const DiscQuery& query, double one_m, double other_m) {
     if (query.mean != nullptr) {
         return (*query.mean)(one_m / query.unit_m, other_m / query.unit_m);
@@ -25,8 +26,6 @@ double mean_factor(const DiscQuery& query, double one_m, double other_m) {
     const double kink = std::clamp(query.kink_m(), low, high);
     return (integrate(plain_6, low, kink, there) + integrate(plain_6, kink, high, there)) / (high - low);
 }
-
-}  // namespace
 
 ChordEnvelope::ChordEnvelope(const DiscQuery& query, double background_m, std::pmr::memory_resource* memory)
     : query_(query),

@@ -10,6 +10,9 @@
 
 namespace downwash {
 
+/// The mean of the factor over a straight slope from one distance to another.
+[[nodiscard]] double mean_factor(const DiscQuery& query, double one_m, double other_m);
+
 /// A straight piece of a surface along a chord: its gap from the rotor plane at both ends.
 struct SurfaceStretch {
     double low, high;

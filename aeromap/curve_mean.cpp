@@ -10,13 +10,8 @@
 namespace downwash {
 namespace {
 
-constexpr double reach = 16;  ///< reach of the table, in radii; farther out k falls like one over the square
-constexpr std::uint32_t intervals = 1024;
-/// Over a shorter range the middle says as much as the integral, and more exactly.
-constexpr double short_range = 1e-3;
-
 /// Distance of a piece's beginning from the start: close to the cap k is steepest.
-double node_distance(double i) {
+double node_distance(double i, double intervals, double reach) {
     return reach * (i / intervals) * (i / intervals);
 }
 
@@ -28,8 +23,8 @@ CurveMean::CurveMean(const EffectCurve& curve)
     pieces_.reserve(intervals);
     last_factor_ = curve(start_);
     for (std::uint32_t i = 0; i < intervals; ++i) {
-        const double low = node_distance(i);
-        const double high = node_distance(i + 1);
+        const double low = node_distance(i, intervals, reach);
+        const double high = node_distance(i + 1, intervals, reach);
         const double width = high - low;
         const double rise = integrate(plain_6, start_ + low, start_ + high, curve);
         // Hermite's cubic through both integrals and both factors, their slopes.
@@ -40,6 +35,16 @@ CurveMean::CurveMean(const EffectCurve& curve)
             {low, width, last_integral_, slope, 3 * rise - 2 * slope - last_slope, slope + last_slope - 2 * rise});
         last_integral_ += rise;
     }
+    quick_.reserve(quick_steps);
+    for (std::int32_t i = 0; i < quick_steps; ++i) {
+        constexpr double step = 1.0 / steps_in_radius;
+        const double low = start_ + i * step;
+        const double integral = integral_to(low);
+        const double rise = integral_to(low + step) - integral;
+        const double slope = step * curve(low);
+        const double last_slope = step * curve(low + step);
+        quick_.push_back({integral, slope, 3 * rise - 2 * slope - last_slope, slope + last_slope - 2 * rise});
+    }
 }
 
 double CurveMean::operator()(double one, double other) const {
@@ -48,23 +53,6 @@ double CurveMean::operator()(double one, double other) const {
         return curve_(0.5 * (one + other));
     }
     return (integral_to(other) - integral_to(one)) / range;
-}
-
-/// Negative before the start.
-double CurveMean::integral_to(double distance) const noexcept {
-    const double beyond = distance - start_;
-    if (beyond <= 0) {
-        return start_factor_ * beyond;
-    }
-    if (beyond >= reach) {
-        const double change = last_factor_ - 1;
-        const double last = start_ + reach;
-        return last_integral_ + (beyond - reach) + change * last * (1 - last / distance);
-    }
-    const double place = std::sqrt(beyond / reach) * intervals;
-    const Piece& piece = pieces_[std::min(static_cast<std::uint32_t>(place), intervals - 1)];
-    const double s = (beyond - piece.low) / piece.width;
-    return piece.integral + s * (piece.slope + s * (piece.bend + s * piece.twist));
 }
 
 }  // namespace downwash

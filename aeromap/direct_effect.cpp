@@ -102,7 +102,7 @@ DirectEffect::DirectEffect(std::shared_ptr<const Scene> scene, const AeroSetting
       ceiling_mean_(mean_of(ceiling_)),
       ground_images_(images_of(settings.ground, settings, rotor_radius_m, neighbours)),
       ceiling_images_(images_of(settings.ceiling, settings, rotor_radius_m, neighbours)),
-      footprints_(std::make_shared<const Footprints>(*scene_)) {}
+      footprints_(std::make_shared<const Footprints>(*scene_, rotor_radius_m)) {}
 
 DirectEffect DirectEffect::fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
                                     double rotor_radius_m, const RotorNeighbours& neighbours) {

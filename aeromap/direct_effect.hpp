@@ -51,9 +51,9 @@ class DOWNWASH_EXPORT DirectEffect {
     /// obstacle counts as touching it. A given map has no one-sided factors (NaN) and is 1 where it does not reach.
     /// Inside a mesh only its triangles count, as sheets. Absolute quadrature error in the flyable area: below 1e-11
     /// under level faces with straight edges, below 2e-3 for any, below 5e-3 with more than 24 parts
-    /// (Scene::part_count) over or under the disc. The last two hold where K differs by at most 1 over the disc, as
-    /// with the default max_factor of 2; where it differs by more they grow in proportion, to 9 times under a
-    /// max_factor of 10.
+    /// (Scene::part_count) over or under the disc. In scenes of more than 2048 parts: below 1e-3 in the flyable area
+    /// (docs/model.md 4.9). The last three hold where K differs by at most 1 over the disc, as with the default
+    /// max_factor of 2; where it differs by more they grow in proportion, to 9 times under a max_factor of 10.
     [[nodiscard]] Factors factors(const Vector3& hub_m) const;
 
     /// K of all surfaces and of those above alone. A given map does not tell them apart and counts as above.

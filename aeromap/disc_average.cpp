@@ -15,6 +15,7 @@
 #include "downwash/aeromap/facing_surface.hpp"
 #include "downwash/aeromap/gauss_rule.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
+#include "downwash/aeromap/row_average.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
@@ -302,6 +303,11 @@ void add_parts(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
 }  // namespace
 
 double disc_average(const DiscQuery& query, const Footprints& footprints) {
+    if (const RowColumns* columns = footprints.columns()) {
+        if (const std::optional<double> average = row_average(query, *columns)) {
+            return *average;
+        }
+    }
     // Room for about 20 parts over one disc; more of them make the pool fetch memory.
     std::array<std::byte, 6144> room;
     std::pmr::monotonic_buffer_resource memory(room.data(), room.size());

@@ -186,10 +186,14 @@ bool Footprint::lies_beside(const Footprint& other) const noexcept {
     return has_side_before(other) || other.has_side_before(*this);
 }
 
-Footprints::Footprints(const Scene& scene)
+Footprints::Footprints(const Scene& scene, double radius_m)
     : scene_(scene),
-      primitives_(footprints_of_primitives(scene)),
-      others_(scene.part_count() - scene.primitive_count()) {}
+      primitives_(scene.part_count() > few_parts ? std::vector<Footprint>{} : footprints_of_primitives(scene)),
+      others_(scene.part_count() - primitives_.size()) {
+    if (scene.part_count() > few_parts) {
+        columns_.emplace(scene, radius_m);
+    }
+}
 
 Footprints::~Footprints() {
     for (Kept& kept : others_) {

@@ -5,9 +5,11 @@
 #include <atomic>
 #include <cstddef>
 #include <list>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "downwash/aeromap/row_columns.hpp"
 #include "downwash/scene/scene.hpp"
 #include "downwash/scene/shadow_outline.hpp"
 
@@ -60,16 +62,23 @@ struct Footprint {
 };
 
 /// The footprints of a scene's parts: those of primitives are made at once, those of triangles and boxes of octrees
-/// when they are first asked for. Safe to share between threads.
+/// when they are first asked for; in a scene of many parts all when they are first asked for. Safe to share between
+/// threads.
 class Footprints {
  public:
-    /// @param scene must live as long as this
-    explicit Footprints(const Scene& scene);
+    /// A scene of more parts is one of many, in which discs are averaged over rows.
+    static constexpr std::size_t few_parts = 2048;
+
+    /// @param scene must live as long as this   @param radius_m of the discs
+    Footprints(const Scene& scene, double radius_m);
     ~Footprints();
     Footprints(const Footprints&) = delete;
     Footprints& operator=(const Footprints&) = delete;
 
-    /// The footprints of the scene's first parts, Scene::primitive_count() of them.
+    /// The columns of a scene of many parts; nullptr in a scene of few.
+    [[nodiscard]] const RowColumns* columns() const noexcept { return columns_ ? &*columns_ : nullptr; }
+
+    /// The footprints of the scene's first parts: Scene::primitive_count() of them, in a scene of many parts none.
     [[nodiscard]] std::span<const Footprint> of_primitives() const noexcept { return primitives_; }
 
     /// Whether these are all parts, and so few that each is asked sooner than those near a place are found.
@@ -78,13 +87,15 @@ class Footprints {
         return primitives_.size() <= few && others_.empty();
     }
 
-    /// The footprint of a part that is no primitive. Kept for later while there is room, else put into `spare`.
+    /// The footprint of a part that is not among the first ones. Kept for later while there is room, else put into
+    /// `spare`.
     [[nodiscard]] const Footprint& of_other(std::size_t part, std::list<Footprint>& spare) const;
 
  private:
     using Kept = std::atomic<const Footprint*>;
 
     const Scene& scene_;
+    std::optional<RowColumns> columns_;
     std::vector<Footprint> primitives_;
     mutable std::vector<Kept> others_;  ///< null: not yet made
     mutable std::atomic<std::size_t> kept_{0};

@@ -16,6 +16,7 @@ Setting::Setting(const Problem& of)
     : problem(of), obstacles(of.obstacles, of.plane, of.robot.shape(), of.robot.rotors.radius_m), law(of.robot) {
     if (of.aero.enabled) {
         effects.all = make_flight_model(of);
+        effects.rays = RayEffect::made_for(of.obstacles, effects.all);
         effects.has_fountain = !of.aero.map && of.aero.ground.model == EffectModel::multirotor_body;
         effects.wall_force = of.aero.wall.force;
         effects.wall_moment_m = of.aero.wall.moment * of.robot.rotors.radius_m;

@@ -14,6 +14,8 @@
 #include <limits>
 #include <utility>
 
+#include "downwash/judge/placement.hpp"
+
 namespace downwash::judge {
 namespace {
 
@@ -40,24 +42,9 @@ struct Part {
     }
 };
 
-Eigen::Vector3d vector_of(const Vector3& v) {
-    return {v[0], v[1], v[2]};
-}
-
 Pose moved(const Eigen::Vector3d& by) {
     Pose pose = Pose::Identity();
     pose.translation() = by;
-    return pose;
-}
-
-/// R = Rz(yaw) Ry(pitch) Rx(roll).
-Pose pose_of(const Obstacle& obstacle) {
-    using Turn = Eigen::AngleAxisd;
-    Pose pose = moved(vector_of(obstacle.center_world_m));
-    pose.linear() =
-        (Turn(obstacle.rpy_rad[2], Eigen::Vector3d::UnitZ()) * Turn(obstacle.rpy_rad[1], Eigen::Vector3d::UnitY()) *
-         Turn(obstacle.rpy_rad[0], Eigen::Vector3d::UnitX()))
-            .toRotationMatrix();
     return pose;
 }
 
@@ -181,9 +168,9 @@ struct Nearest {
 struct Obstacles::Solids {
     PlaneOfMotion plane;
     RobotShape robot;
-    std::vector<Part> few;                                     ///< primitives and meshes, in the world
-    std::vector<std::unique_ptr<fcl::CollisionObjectd>> many;  ///< cubes of octrees
-    fcl::DynamicAABBTreeCollisionManagerd tree;                ///< A tree of the cubes.
+    std::vector<Part> few;                                     ///< meshes, and primitives if these are few
+    std::vector<std::unique_ptr<fcl::CollisionObjectd>> many;  ///< cubes of octrees, and primitives if these are many
+    fcl::DynamicAABBTreeCollisionManagerd tree;                ///< A tree of those.
     std::vector<Part> bodies;                                  ///< in the body frame
     Geometry arm, disc;
 
@@ -214,10 +201,13 @@ Obstacles::Obstacles(const std::vector<Obstacle>& obstacles, const PlaneOfMotion
     auto solids = std::make_unique<Solids>();
     solids->plane = plane;
     solids->robot = robot;
+    constexpr std::size_t max_asked_one_by_one = 64;
+    const bool are_many = obstacles.size() > max_asked_one_by_one;
     for (const Obstacle& obstacle : obstacles) {
-        const bool is_octree = std::holds_alternative<Octomap>(obstacle.shape);
+        const bool is_in_tree = std::holds_alternative<Octomap>(obstacle.shape) ||
+                                (are_many && !std::holds_alternative<Mesh>(obstacle.shape));
         const auto add = [&](Geometry geometry, const Pose& pose) {
-            if (is_octree) {
+            if (is_in_tree) {
                 geometry->computeLocalAABB();
                 solids->many.push_back(std::make_unique<fcl::CollisionObjectd>(std::move(geometry), pose));
             } else {

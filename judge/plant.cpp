@@ -40,7 +40,8 @@ double rotor_power_w(const Vehicle& vehicle, const std::array<double, max_rotors
 }
 
 Acceleration Plant::acceleration(const Motion& motion, const std::array<double, max_rotors>& thrust_n,
-                                 double joint_torque_nm, Planar wind_m_s, double* contact_n) const {
+                                 double joint_torque_nm, Planar wind_m_s, double* contact_n,
+                                 const Surroundings::Tangents& near) const {
     const Planar up = from_body({0, 1}, motion.pitch_rad);  // b3
     Loads loads;
     loads.joint_torque_nm = joint_torque_nm;
@@ -56,7 +57,7 @@ Acceleration Plant::acceleration(const Motion& motion, const std::array<double, 
         const double thrust = vehicle_.thrust_of[k] * thrust_n[k];
         free_air_n += thrust;
         acting_n[k] = thrust;
-        push(lever, surroundings_.thrust_ratio(i, motion.position_m + lever, motion.pitch_rad) * thrust);
+        push(lever, surroundings_.thrust_ratio(i, motion.position_m + lever, motion.pitch_rad, near) * thrust);
     }
     const Planar center = from_body(vehicle_.hub_center_m, motion.pitch_rad);
     push(center, surroundings_.fountain(motion.position_m + center, motion.pitch_rad) * free_air_n);
@@ -75,6 +76,7 @@ Acceleration Plant::acceleration(const Motion& motion, const std::array<double, 
 PlantState Plant::after(const PlantState& state, const Command& command, Planar wind_m_s, double duration_s) const {
     namespace odeint = boost::numeric::odeint;
     const bool has_lag = vehicle_.rotor_time_constant_s > 0;
+    const auto near = surroundings_.tangents(vehicle_, state.motion.position_m, state.motion.pitch_rad);
     const auto rate = [&](const Numbers& y, Numbers& dy, double) {
         const Motion motion = motion_of(y);
         std::array<double, max_rotors> thrust_n = command.thrust_n;
@@ -85,7 +87,7 @@ PlantState Plant::after(const PlantState& state, const Command& command, Planar 
                 dy[first_thrust + i] = (command.thrust_n[i] - thrust_n[i]) / vehicle_.rotor_time_constant_s;
             }
         }
-        const Acceleration a = acceleration(motion, thrust_n, command.joint_torque_nm, wind_m_s, &dy[9]);
+        const Acceleration a = acceleration(motion, thrust_n, command.joint_torque_nm, wind_m_s, &dy[9], near);
         std::copy_n(y.begin() + 4, 4, dy.begin());
         dy[4] = a.position_m_s2.x;
         dy[5] = a.position_m_s2.z;

@@ -35,10 +35,12 @@ class Plant {
 
     /// The accelerations under rotor thrusts (free air, nominal coefficient) [N] and a joint torque [N m].
     /// @param[out] contact_n normal force of the surface, if asked for
+    /// @param near the effect of surfaces near this motion, where it is known
     [[nodiscard]] DOWNWASH_EXPORT Acceleration acceleration(const Motion& motion,
                                                             const std::array<double, max_rotors>& thrust_n,
                                                             double joint_torque_nm, Planar wind_m_s,
-                                                            double* contact_n = nullptr) const;
+                                                            double* contact_n = nullptr,
+                                                            const Surroundings::Tangents& near = {}) const;
 
     /// The state after `duration_s` with the command held and a steady wind: Dormand and Prince's method of fifth order
     /// with steps controlled to 1e-8 (relative and absolute, SI units), restarted here.
