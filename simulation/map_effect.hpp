@@ -48,14 +48,14 @@ class MapEffect {
                 enter(nowhere, patches, lane);
             }
         }
+        for (int rotor = 0; rotor < max_rotors; ++rotor) {
+            same_as_[rotor] = maps_.same_as[rotor];
+        }
     }
 
     SidedFactor<T> at_rotor(int rotor, const T& x_m, const T& z_m) { return at_place(rotor, x_m, z_m); }
     /// Holds for the place where the earlier rotor was looked up last.
-    [[nodiscard]] int same_as(int rotor) const {
-        const int first = maps_.same_as[rotor];
-        return patches_[first].apart == 0 ? first : rotor;
-    }
+    [[nodiscard]] int same_as(int rotor) const { return same_as_[rotor]; }
     SidedFactor<T> at_body(const T& x_m, const T& z_m) { return at_place(RotorMaps::body_place, x_m, z_m); }
     T wall_nearness(const T& x_m, const T& z_m) { return at_place(RotorMaps::wall_place, x_m, z_m).all - T(1); }
     MapEffect& as_read() { return *this; }
@@ -182,6 +182,10 @@ class MapEffect {
             }
             patches.apart = are_together ? patches.apart & ~bit : patches.apart | bit;
         }
+        for (unsigned int followers = maps_.followers[place]; followers != 0; followers &= followers - 1) {
+            const int follower = __builtin_ctz(followers);
+            same_as_[follower] = patches_[place].apart == 0 ? place : follower;
+        }
         return outside;
     }
 
@@ -202,6 +206,7 @@ class MapEffect {
 
     const RotorMaps& maps_;
     Patches patches_[max_rotors + 2];
+    int same_as_[max_rotors];  ///< of each rotor, where the earlier one was looked up last
 };
 
 }  // namespace downwash::simulation
