@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,7 @@
 
 namespace downwash {
 
-struct CellRows;
+class MapBlocks;
 struct ColumnRange;
 
 /// One layer of a map: an effect in the plane of motion shifted sideways.
@@ -33,137 +34,125 @@ struct MapLayer {
 /// A map has no more cells than this: 2^24, some hundred megabytes.
 inline constexpr double max_map_cells = 16777216;
 
+/// A point in the plane coordinates of a layer [m].
+struct LayerPlace {
+    std::size_t layer;
+    double x_m, z_m;
+};
+
 /// K stored over rotor positions in the plane of motion, with one layer for all rotors that share lateral offset and
 /// effect.
 ///
 /// A layer is a regular grid of square cells; every cell holds a small regular grid of its own, refined by powers of
 /// two in x and z apart until bilinear interpolation stays within 0.01 of the direct evaluation everywhere in the
-/// flyable area (docs/model.md 4.5); neighbours of equal values share them. A cell is `grid_m` wide, or a whole part of
-/// it that is at most 0.45 R and fine enough for 512 steps of refinement to resolve the models. Values are kept as
-/// float (relative error 2^-24). Immutable after construction.
+/// flyable area (docs/model.md 4.5). A cell is `grid_m` wide, or a whole part of it that is at most 0.45 R and fine
+/// enough for 512 steps of refinement to resolve the models. Values are kept as float (relative error 2^-24).
+///
+/// A map fills where it is asked: blocks of 8 x 8 cells are computed at the first look-up in them, and kept. A block is
+/// a pure function of layers, extent and its place, so a look-up gives the same to the last bit, whoever asked for what
+/// before. Copies share their blocks. Safe to share between threads.
 ///
 /// Limits: at most 2^24 cells in all layers together. Settings whose model changes by more than 0.016 K over R / 25600
 /// (a max_factor far above 3 with a min_distance_radii near the model's pole) may exceed the 0.01 right at the surface.
 class DOWNWASH_EXPORT AeroMap {
  public:
-    /// Builds every layer. The bytes do not depend on the number of threads.
-    /// @param threads at least 1
-    /// @param on_progress called from the calling thread with the share that is built
-    /// @throws WorkStopped when it is over before the map is built
+    /// A map in which nothing is filled yet.
     /// @throws InputError if the extent is empty or not finite, grid_m or an offset is out of range, or the map would
     /// have too many cells
-    AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent, int threads = 1,
-            const std::function<void(double)>& on_progress = {}, const StopCondition& is_over = {});
+    AeroMap(std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent);
 
-    /// The map after obstacles came, went or moved: equal to the last bit to one that is built anew, but only the
-    /// columns over and under what changed are evaluated again, if K depends on what is over and under the disc alone.
+    /// Fills every block that is missing, on some threads.
+    /// @param threads at least 1
+    /// @param on_progress called from the calling thread with the share that is filled; not if nothing is missing
+    /// @throws WorkStopped when it is over before the map is full; what was filled stays
+    void fill(int threads = 1, const std::function<void(double)>& on_progress = {},
+              const StopCondition& is_over = {}) const;
+
+    /// Fills the blocks around some places; places outside the extent have none. Otherwise like fill().
+    void fill_around(std::span<const LayerPlace> places, int threads = 1,
+                     const std::function<void(double)>& on_progress = {}, const StopCondition& is_over = {}) const;
+
+    /// The share of the blocks that are filled.
+    [[nodiscard]] double filled_share() const;
+
+    /// What all threads together have spent on filling blocks of this map and its copies so far [s].
+    [[nodiscard]] double filling_s() const noexcept;
+
+    /// The map after obstacles came, went or moved. It fills nothing, and keeps the blocks that are certainly the
+    /// same in the new scene, those away from the columns over and under what changed if K depends on what is over and
+    /// under the disc alone.
     /// @param layers as those of the map, in the new scene   @param changed boxes around what changed, before and after
-    /// @throws WorkStopped when it is over before the map is built
-    [[nodiscard]] AeroMap rebuilt(std::vector<MapLayer> layers, const std::vector<BoundingBox>& changed,
-                                  int threads = 1, const StopCondition& is_over = {}) const;
+    [[nodiscard]] AeroMap rebuilt(std::vector<MapLayer> layers, const std::vector<BoundingBox>& changed) const;
 
     /// Whether a part of the map may be another once boxes have changed; see rebuilt(). A part outside the extent is
     /// evaluated directly, in the old scene: then the answer is yes.
     [[nodiscard]] bool is_touched(const std::vector<BoundingBox>& changed, const Bounds& part) const;
 
-    /// The content of the map as bytes. Only a machine of the same byte order can read them.
+    /// What is filled, as bytes. Only a machine of the same byte order can read them.
     [[nodiscard]] std::string to_bytes() const;
 
-    /// The map from its bytes, equal to the last bit. Empty if the bytes are not a map of these layers, or if some of
-    /// its values differ from what the effects give today.
+    /// The blocks that were filled here since the last call, as bytes: not those that were read. Empty if there are
+    /// none.
+    [[nodiscard]] std::string take_new_bytes() const;
+
+    /// The map from its bytes, equal to the last bit where it is filled. Empty if the bytes are not a map of these
+    /// layers, or if some of its values differ from what the effects give today.
     [[nodiscard]] static std::optional<AeroMap> from_bytes(std::vector<MapLayer> layers, const PlaneOfMotion& plane,
                                                            const Bounds& extent, std::string_view bytes);
 
+    /// Adds the blocks of such bytes; false, and nothing is added, if they are not of this map.
+    bool add_bytes(std::string_view bytes);
+
     /// As given. The cells may reach beyond its upper ends by less than one cell.
-    [[nodiscard]] const Bounds& extent() const noexcept { return extent_; }
-    [[nodiscard]] const PlaneOfMotion& plane() const noexcept { return plane_; }
-    [[nodiscard]] const std::vector<MapLayer>& layers() const noexcept { return layers_; }
-    [[nodiscard]] std::size_t memory_bytes() const noexcept;
+    [[nodiscard]] const Bounds& extent() const noexcept;
+    [[nodiscard]] const PlaneOfMotion& plane() const noexcept;
+    [[nodiscard]] const std::vector<MapLayer>& layers() const noexcept;
+    /// The memory that the map takes now.
+    [[nodiscard]] std::size_t memory_bytes() const;
 
     /// K at a rotor hub in the plane coordinates (x, z) of a layer: interpolated inside the extent, where it means
     /// nothing unless is_flyable(), evaluated directly outside it or when x or z is not finite (then 1).
-    [[nodiscard]] double factor(std::size_t layer, double x_m, double z_m) const noexcept {
-        const double u = (x_m - extent_.x_low_m) * cells_per_m_;
-        const double w = (z_m - extent_.z_low_m) * cells_per_m_;
-        // Written so that NaN fails. Below, u - i is exact and less than 1, and so is its product with a power of two:
-        // no index can leave its cell.
-        if (!(u >= 0 && w >= 0 && u < columns_ && w < rows_)) {
-            return factor_outside(layer, x_m, z_m);
+    [[nodiscard]] double factor(std::size_t layer, double x_m, double z_m) const {
+        const MapView& map = views_[layer];
+        const double u = (x_m - map.x_low_m) * map.cells_per_m;
+        const double w = (z_m - map.z_low_m) * map.cells_per_m;
+        if (!map.contains(u, w)) {
+            return sided_factor_outside(layer, x_m, z_m).all;
         }
-        const auto i = static_cast<std::uint32_t>(u);
-        const auto k = static_cast<std::uint32_t>(w);
-        const Raster& raster = *rasters_[layer];
-        const MapCell& cell = raster.cells[std::size_t{k} * columns_ + i];
-        const double a = (u - i) * cell.steps_x;
-        const double b = (w - k) * cell.steps_z;
-        const auto ia = static_cast<std::uint32_t>(a);
-        const auto ib = static_cast<std::uint32_t>(b);
-        const float* node = raster.nodes.data() + cell.first_node + ib * (cell.steps_x + 1U) + ia;
-        const double s = a - ia;
-        const double t = b - ib;
-        const float* upper = node + cell.steps_x + 1U;
-        const double corner[4] = {node[0], node[1], upper[0], upper[1]};
-        return bilinear(corner, s, t);
+        const MapPatch patch = patch_at(map, u, w);
+        return bilinear(patch.corner, (u - patch.u) * patch.steps_x, (w - patch.w) * patch.steps_z);
     }
 
     /// K with the part of the surfaces above: exactly 1, or all of K, where one side is all that matters.
-    [[nodiscard]] SidedFactor<double> sided_factor(std::size_t layer, double x_m, double z_m) const noexcept;
+    [[nodiscard]] SidedFactor<double> sided_factor(std::size_t layer, double x_m, double z_m) const;
 
-    /// Whether two layers have the same values, such as those of the left and right rotors of a vehicle that flies
-    /// along the middle of a scene. Look-ups inside the extent then agree to the last bit.
-    [[nodiscard]] bool are_equal(std::size_t layer, std::size_t other) const noexcept {
-        return rasters_[layer] == rasters_[other];
-    }
-
-    /// Valid while the map exists.
-    [[nodiscard]] MapView view(std::size_t layer) const noexcept {
-        const Raster& raster = *rasters_[layer];
-        return {extent_.x_low_m,     extent_.z_low_m,          cells_per_m_,        columns_,           rows_,
-                raster.cells.data(), raster.flyability.data(), raster.sides.data(), raster.nodes.data()};
-    }
+    /// Valid while the map or a copy exists.
+    [[nodiscard]] const MapView& view(std::size_t layer) const noexcept { return views_[layer]; }
 
     /// Whether a rotor hub is inside the flyable area. Exact; the cell decides if it agrees as a whole.
     [[nodiscard]] bool is_flyable(std::size_t layer, double x_m, double z_m) const;
 
  private:
-    /// The values of one layer.
-    struct Raster {
-        std::vector<MapCell> cells;
-        std::vector<CellFlyability> flyability;  ///< one for each cell
-        std::vector<CellSides> sides;            ///< one for each cell
-        std::vector<float> nodes;  ///< a cell that has the values of the one before it shares them: most cells do
-
-        void append(const CellRows& rows, const ColumnRange& columns, const Raster* before, std::size_t first,
-                    std::size_t width);
-        void append_cell(std::uint16_t steps_x, std::uint16_t steps_z, CellSides side, const float* values);
-        [[nodiscard]] static std::ptrdiff_t value_count(const MapCell& cell, CellSides sides);
-    };
-
-    /// A map without values.
-    struct Empty {};
-    AeroMap(Empty, std::vector<MapLayer> layers, const PlaneOfMotion& plane, const Bounds& extent);
-
-    [[nodiscard]] double factor_outside(std::size_t layer, double x_m, double z_m) const noexcept {
-        return sided_factor_outside(layer, x_m, z_m).all;
-    }
-    [[nodiscard]] SidedFactor<double> sided_factor_outside(std::size_t layer, double x_m, double z_m) const noexcept;
-    void build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over);
-    /// @param before in which the columns between were something else; nullptr for a new map
-    void build(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over,
-               const AeroMap* before, const ColumnRange& changed);
+    [[nodiscard]] SidedFactor<double> sided_factor_outside(std::size_t layer, double x_m, double z_m) const;
     [[nodiscard]] ColumnRange columns_beside(const std::vector<BoundingBox>& boxes) const;
-    void add_raster(Raster raster);
-    [[nodiscard]] bool is_sound(const Raster& raster) const;
-    [[nodiscard]] bool agrees_with_effect(std::size_t layer) const;
+    [[nodiscard]] std::string bytes_of(const std::vector<std::size_t>& slots) const;
+    [[nodiscard]] bool agrees_with_effect(const std::vector<std::size_t>& slots,
+                                          const std::vector<std::shared_ptr<const MapBlock>>& blocks) const;
 
-    std::vector<MapLayer> layers_;
-    PlaneOfMotion plane_;
-    Bounds extent_;
-    double cell_m_;  ///< side of a cell
-    double cells_per_m_;
-    std::uint32_t columns_;
-    std::uint32_t rows_;
-    std::vector<std::shared_ptr<const Raster>> rasters_;  ///< one per layer; layers of equal values share theirs
+    std::shared_ptr<MapBlocks> blocks_;
+    std::vector<MapView> views_;  ///< one per layer
 };
+
+/// The values of a layer in two arrays over its cells, and one of nodes, to be looked at as a whole.
+struct MapArrays {
+    std::uint32_t columns, rows;
+    std::vector<MapCell> cells;              ///< x running fastest
+    std::vector<CellFlyability> flyability;  ///< one for each cell
+    std::vector<CellSides> sides;            ///< one for each cell
+    std::vector<float> nodes;                ///< as those of MapBlock
+};
+
+/// Fills the map and copies a layer. @throws InputError if it has more than 2^32 values
+[[nodiscard]] DOWNWASH_EXPORT MapArrays arrays_of(const AeroMap& map, std::size_t layer, int threads = 1);
 
 }  // namespace downwash

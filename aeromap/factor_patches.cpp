@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "downwash/aeromap/change_bound.hpp"
 #include "downwash/aeromap/triquadratic.hpp"
@@ -22,6 +24,9 @@ constexpr std::size_t max_known = 1U << 17U;
 
 /// A node without parabolas. Block 0 is no quarter.
 constexpr std::int32_t direct = 0;
+/// A node that nobody has asked for, and one in a square that is flyable as a whole.
+constexpr std::int32_t unknown = std::numeric_limits<std::int32_t>::min();
+constexpr std::int32_t unknown_flyable = unknown + 1;
 
 /// The product of two parabolas through 3 x 3 values, at parts from 0 to 1 of the square's side.
 SidedFactor<double> biquadratic(const std::array<SidedFactor<double>, 9>& values, double x, double z) {
@@ -38,28 +43,25 @@ SidedFactor<double> biquadratic(const std::array<SidedFactor<double>, 9>& values
 
 }  // namespace
 
-FactorPatches::FactorPatches(const LayerGrid& grid, std::size_t first) : grid_(grid), first_(first) {}
-
-/// A block answers for its left edge, so that the one behind the columns is needed too.
-void FactorPatches::fit(const ColumnRange& columns, const FlyableCells& flyable) {
-    blocks_ = (grid_.columns + block_cells - 1) / block_cells;
-    nodes_.assign(blocks_, direct);
-    const std::size_t last = std::min(blocks_, columns.last / block_cells + 1);
-    for (std::size_t i = columns.first / block_cells; i < last; ++i) {
-        fit(i, {i * block_units, 0, block_units}, false, flyable);
-    }
+FactorPatches::FactorPatches(const LayerGrid& grid, std::size_t first, FlyableCells flyable)
+    : grid_(grid),
+      first_(first),
+      flyable_(std::move(flyable)),
+      blocks_(flyable_ ? (grid.columns + block_cells - 1) / block_cells : 0) {
+    nodes_.assign(blocks_, unknown);
 }
 
-void FactorPatches::fit(std::size_t node, const Square& square, bool is_flyable, const FlyableCells& flyable) {
-    if (!is_flyable) {
-        const std::uint64_t cells = std::max(square.side / cell_units, std::uint64_t{1});
-        const Flyable answer = flyable(square.x / cell_units, square.z / cell_units, cells);
-        if (answer == Flyable::none || (answer == Flyable::some && cells == 1)) {
-            return;
-        }
-        is_flyable = answer == Flyable::all;
+/// Decides what a node stands for.
+void FactorPatches::fit(std::size_t node, const Square& square) {
+    const Flyable flyable = nodes_[node] == unknown_flyable
+                                ? Flyable::all
+                                : flyable_(square.x / cell_units, first_ + square.z / cell_units,
+                                           std::max(square.side / cell_units, std::uint64_t{1}));
+    nodes_[node] = direct;
+    if (flyable == Flyable::none || (flyable == Flyable::some && square.side <= cell_units)) {
+        return;
     }
-    if (is_flyable) {
+    if (flyable == Flyable::all) {
         Values values{};
         for (std::size_t n = 0; n < values.size(); ++n) {
             values[n] = sample(square.x + n % 3 * (square.side / 2), square.z + n / 3 * (square.side / 2));
@@ -70,16 +72,9 @@ void FactorPatches::fit(std::size_t node, const Square& square, bool is_flyable,
             return;
         }
     }
-    if (square.side <= min_units) {
-        return;
-    }
-    const std::size_t quarters = nodes_.size();
-    nodes_[node] = static_cast<std::int32_t>(quarters);
-    nodes_.resize(quarters + 4, direct);
-    const std::uint64_t half = square.side / 2;
-    for (std::uint64_t quarter = 0; quarter < 4; ++quarter) {
-        fit(quarters + quarter, {square.x + quarter % 2 * half, square.z + quarter / 2 * half, half}, is_flyable,
-            flyable);
+    if (square.side > min_units) {
+        nodes_[node] = static_cast<std::int32_t>(nodes_.size());
+        nodes_.resize(nodes_.size() + 4, flyable == Flyable::all ? unknown_flyable : unknown);
     }
 }
 
@@ -111,14 +106,20 @@ SidedFactor<double> FactorPatches::factor(double x_m, double z_m) {
         return sample(x, z);
     }
     Square square{block * block_units, 0, block_units};
-    std::int32_t node = nodes_[block];
+    const auto stands_for = [&](std::size_t place) {
+        if (nodes_[place] <= unknown_flyable) {
+            fit(place, square);
+        }
+        return nodes_[place];
+    };
+    std::int32_t node = stands_for(block);
     while (node > direct) {
         square.side /= 2;
         const bool is_right = x >= square.x + square.side;
         const bool is_upper = z >= square.z + square.side;
         square.x += is_right ? square.side : 0;
         square.z += is_upper ? square.side : 0;
-        node = nodes_[static_cast<std::size_t>(node) + (is_right ? 1U : 0U) + (is_upper ? 2U : 0U)];
+        node = stands_for(static_cast<std::size_t>(node) + (is_right ? 1U : 0U) + (is_upper ? 2U : 0U));
     }
     if (node == direct) {
         return sample(x, z);
@@ -134,11 +135,7 @@ SidedFactor<double> FactorPatches::sample(std::uint64_t x, std::uint64_t z) {
     if (known_.size() >= max_known) {
         known_.clear();
     }
-    const auto [known, is_new] = known_.try_emplace(x * (2 * block_units) + z);
-    if (is_new) {
-        known->second = grid_.effect.sided_factor(hub_m(x, z));
-    }
-    return known->second;
+    return known_.find_or_add(x * (2 * block_units) + z, [&] { return grid_.effect.sided_factor(hub_m(x, z)); });
 }
 
 /// At corners of cells as exactly there as the map's own arithmetic has them.

@@ -7,22 +7,24 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <unordered_map>
 #include <vector>
 
 #include "downwash/aeromap/cell_refinement.hpp"
+#include "downwash/aeromap/known_factors.hpp"
 #include "downwash/aeromap/layer_grid.hpp"
+#include "downwash/aeromap/map_view.hpp"
 
 namespace downwash {
 
 /// K over a strip of a layer for far fewer evaluations than it is asked for. Square blocks of cells are halved until
 /// parabolas through samples meet K at further samples, or are left to direct evaluation when they do not; what was
-/// evaluated once is remembered.
+/// evaluated once is remembered. Squares are fitted where and when K is asked for, each without regard to the others:
+/// what one knows of a square does not depend on what was asked before.
 class FactorPatches {
  public:
-    /// The largest blocks, and the strip, are as many cells wide and high. Where their lower left corners are flyable
+    /// The largest squares, and the strip, are as many cells wide and high. Where their lower left corners are flyable
     /// K is exact there.
-    static constexpr std::size_t block_cells = 8;
+    static constexpr std::size_t block_cells = MapBlock::side_cells;
 
     /// Which columns of a layer change with some of them: their whole blocks, and the block before them, whose right
     /// edge is theirs. None without any.
@@ -35,18 +37,14 @@ class FactorPatches {
                 (columns.last + block_cells - 1) / block_cells * block_cells};
     }
 
-    /// Whether the cells [i, i + n) of the strip's rows [k, k + n) are flyable throughout; of those in the layer.
+    /// Whether the cells [i, i + n) of the layer's rows [k, k + n) are flyable throughout; of those in the layer.
     enum class Flyable : std::uint8_t { none, some, all };
     using FlyableCells = std::function<Flyable(std::size_t i, std::size_t k, std::size_t n)>;
 
-    /// Evaluates directly until parabolas are fitted.
     /// @param first the strip's first row
-    FactorPatches(const LayerGrid& grid, std::size_t first);
-
-    /// Fits parabolas where all cells are flyable.
-    /// @param columns that K is asked in; of whole blocks   @pre K turns only from one obstacle to the next
-    /// (shortest_turn_m)
-    void fit(const ColumnRange& columns, const FlyableCells& flyable);
+    /// @param flyable where parabolas may be fitted: where all cells are flyable. Empty: K is evaluated directly
+    /// everywhere, as it must be where it does not turn only from one obstacle to the next (shortest_turn_m)
+    FactorPatches(const LayerGrid& grid, std::size_t first, FlyableCells flyable);
 
     /// K at a point of the strip, which is taken to the nearest of 2048 in a cell's side; parabolas miss by about
     /// 0.002 at most.
@@ -60,7 +58,7 @@ class FactorPatches {
         std::uint64_t x, z, side;
     };
 
-    void fit(std::size_t node, const Square& square, bool is_flyable, const FlyableCells& flyable);
+    void fit(std::size_t node, const Square& square);
     [[nodiscard]] bool is_met(const Square& square, const Values& values);
     [[nodiscard]] bool is_quiet(const Square& square) const;
     [[nodiscard]] SidedFactor<double> sample(std::uint64_t x, std::uint64_t z);
@@ -68,13 +66,14 @@ class FactorPatches {
 
     const LayerGrid& grid_;
     std::size_t first_;
-    /// Nodes of the blocks and, behind them, of their quarters in groups of four: what a node stands for is `direct`,
-    /// the index of its first quarter, or -1 - i for values_[i].
+    FlyableCells flyable_;
+    /// Nodes of the blocks and, behind them, of their quarters in groups of four: what a node stands for is unknown,
+    /// `direct`, the index of its first quarter, or -1 - i for values_[i].
     std::vector<std::int32_t> nodes_;
     std::size_t blocks_ = 0;
     std::vector<Values> values_;
     /// K at points of the lattice; forgotten when they grow many.
-    std::unordered_map<std::uint64_t, SidedFactor<double>> known_;
+    KnownFactors known_;
 };
 
 }  // namespace downwash

@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <utility>
+#include <vector>
 
+#include "downwash/aeromap/cell_refinement.hpp"
 #include "downwash/aeromap/change_bound.hpp"
 #include "downwash/aeromap/factor_patches.hpp"
+#include "downwash/aeromap/owned_block.hpp"
 #include "downwash/effects/effect_table.hpp"
 #include "downwash/grids/factor_grid.hpp"
 #include "downwash/scene/collision_checker.hpp"
@@ -14,73 +19,79 @@
 namespace downwash {
 namespace {
 
-class RowsBuilder {
+constexpr std::size_t side_cells = MapBlock::side_cells;
+
+}  // namespace
+
+class StripBuilder::Impl {
  public:
-    RowsBuilder(const LayerGrid& grid, std::size_t first, std::size_t last)
+    Impl(const LayerGrid& grid, std::size_t row)
         : grid_(grid),
           radius_m_(grid.effect.rotor_radius_m()),
           min_clearance_m_(grid.effect.min_clearance_m()),
-          first_(first),
-          last_(last),
-          patches_(grid, first) {
-        rows_.flyability.resize((last - first) * grid.columns, CellFlyability::flyable);
+          first_(row * side_cells),
+          last_(std::min(first_ + side_cells, grid.rows)),
+          flyability_((last_ - first_) * grid.columns, CellFlyability::flyable),
+          is_known_((grid.columns + side_cells - 1) / side_cells, false),
+          shortest_turn_m_(shortest_turn_m(grid.effect)),
+          patches_(grid, first_, cells_that_parabolas_may_fit()) {
         everywhere_.factor = [this](double x, double z) { return patches_.factor(x, z).all; };
-        everywhere_.shortest_turn_m = shortest_turn_m(grid.effect);
+        everywhere_.shortest_turn_m = shortest_turn_m_;
         partly_ = everywhere_;
         partly_.is_forbidden_around = [this](double x, double z, double reach) {
             return is_forbidden_around(x, z, reach);
         };
     }
 
-    CellRows build() {
-        find_flyable();
-        build_columns({0, grid_.columns});
-        return std::move(rows_);
+    void look_at_all() { look_at({0, grid_.columns}); }
+
+    BlockFlyability flyability_of(std::size_t column) {
+        BlockFlyability cells;
+        cells.fill(CellFlyability::forbidden);
+        const std::size_t first = column * side_cells;
+        for (std::size_t k = first_; k < last_; ++k) {
+            for (std::size_t i = first; i < std::min(first + side_cells, grid_.columns); ++i) {
+                cells[MapBlock::cell_at(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k))] =
+                    flyability(i, k);
+            }
+        }
+        return cells;
     }
 
-    CellRows rebuild(const LayerBefore& before, ColumnRange& columns) {
-        find_flyable();
-        columns = not_as_before(before);
-        build_columns(columns);
-        return std::move(rows_);
+    std::shared_ptr<const MapBlock> block(std::size_t column) {
+        block_ = std::make_shared<OwnedBlock>();
+        const std::size_t first = column * side_cells;
+        const std::size_t last = std::min(first + side_cells, grid_.columns);
+        is_calm_ = is_calm(first, last);
+        const MapCell* before = nullptr;
+        for (std::size_t k = first_; k < last_; ++k) {
+            for (std::size_t i = first; i < last; ++i) {
+                before = add_cell(i, k, before);
+            }
+        }
+        block_->seal();
+        return std::exchange(block_, nullptr);
     }
 
  private:
-    void find_flyable() {
+    FactorPatches::FlyableCells cells_that_parabolas_may_fit() {
+        if (!grid_.effect.settings().enabled || !std::isinf(shortest_turn_m_)) {
+            return {};
+        }
+        return [this](std::size_t i, std::size_t k, std::size_t n) { return flyable_cells(i, k, n); };
+    }
+
+    /// Finds which cells of some whole blocks are flyable.
+    void look_at(const ColumnRange& columns) {
         if (grid_.effect.settings().enabled) {
+            wanted_ = columns;
             classify(0, grid_.columns, first_, last_);
             if (grid_.effect.settings().map && min_clearance_m_ >= 0) {
-                ask_given_map();
+                ask_given_map(columns);
             }
         }
-    }
-
-    /// The values of some columns, whose blocks of patches are theirs alone.
-    void build_columns(const ColumnRange& columns) {
-        if (grid_.effect.settings().enabled && std::isinf(everywhere_.shortest_turn_m)) {
-            patches_.fit(columns, [this](std::size_t i, std::size_t k, std::size_t n) {
-                return flyable_cells(i, first_ + k, n);
-            });
-        }
-        for (std::size_t k = first_; k < last_; ++k) {
-            for (std::size_t i = columns.first; i < columns.last; ++i) {
-                add_cell(i, k);
-            }
-        }
-    }
-
-    /// Those that may have changed, and those where other cells are flyable, with all that change with them.
-    [[nodiscard]] ColumnRange not_as_before(const LayerBefore& before) {
-        ColumnRange columns = before.changed;
-        for (std::size_t k = first_; k < last_; ++k) {
-            for (std::size_t i = 0; i < grid_.columns; ++i) {
-                if (flyability(i, k) != before.flyability[k * grid_.columns + i]) {
-                    columns = {std::min(columns.first, i), std::max(columns.last, i + 1)};
-                }
-            }
-        }
-        const ColumnRange changing = FactorPatches::changing_with(columns);
-        return {changing.first, std::min(grid_.columns, changing.last)};
+        std::fill(is_known_.begin() + static_cast<std::ptrdiff_t>(columns.first / side_cells),
+                  is_known_.begin() + static_cast<std::ptrdiff_t>((columns.last + side_cells - 1) / side_cells), true);
     }
 
     [[nodiscard]] double x_at(std::size_t i) const { return grid_.x_low_m + static_cast<double>(i) * grid_.side_m; }
@@ -94,8 +105,14 @@ class RowsBuilder {
     [[nodiscard]] bool is_clear(double x, double z, double distance_m) const {
         return distance_m <= 0 || disc_is_clear(grid_.effect.scene(), hub(x, z), radius_m_, distance_m);
     }
-    CellFlyability& flyability(std::size_t i, std::size_t k) {
-        return rows_.flyability[(k - first_) * grid_.columns + i];
+    [[nodiscard]] std::size_t place_of(std::size_t i, std::size_t k) const { return (k - first_) * grid_.columns + i; }
+    /// Found for a whole block when it is first asked for.
+    [[nodiscard]] CellFlyability flyability(std::size_t i, std::size_t k) {
+        if (!is_known_[i / side_cells]) {
+            const std::size_t first = i / side_cells * side_cells;
+            look_at({first, std::min(first + side_cells, grid_.columns)});
+        }
+        return flyability_[place_of(i, k)];
     }
 
     /// Which cells are flyable from (i, k) to before (i + n, k + n).
@@ -125,8 +142,12 @@ class RowsBuilder {
     }
 
     /// Moving the disc by d changes its clearance by at most d: one place decides a whole block of cells when its
-    /// clearance differs from the minimum by more than the block's half diagonal. Otherwise the block is halved.
+    /// clearance differs from the minimum by more than the block's half diagonal. Otherwise the block is halved, from
+    /// the whole strip down to the cells of the wanted columns: what is found there is the same whatever is wanted.
     void classify(std::size_t i0, std::size_t i1, std::size_t k0, std::size_t k1) {
+        if (i1 <= wanted_.first || i0 >= wanted_.last) {
+            return;
+        }
         throw_if_over(grid_.is_over);
         const double half_x = 0.5 * (x_at(i1) - x_at(i0));
         const double half_z = 0.5 * (z_at(k1) - z_at(k0));
@@ -152,26 +173,27 @@ class RowsBuilder {
             return;
         }
         for (std::size_t k = k0; k < k1; ++k) {
-            for (std::size_t i = i0; i < i1; ++i) {
-                flyability(i, k) = verdict;
+            for (std::size_t i = std::max(i0, wanted_.first); i < std::min(i1, wanted_.last); ++i) {
+                flyability_[place_of(i, k)] = verdict;
             }
         }
     }
 
     /// Cells that the scene leaves flyable need the exact test wherever a given map may forbid a part of them.
-    void ask_given_map() {
+    void ask_given_map(const ColumnRange& columns) {
         constexpr double slack_m = 1e-9;  // the nodes of map and grid often coincide
         for (std::size_t k = first_; k < last_; ++k) {
-            for (std::size_t i = 0; i < grid_.columns; ++i) {
+            for (std::size_t i = columns.first; i < columns.last; ++i) {
                 const double x_low = x_at(i) - slack_m;
                 const double x_high = x_at(i + 1) + slack_m;
                 const double z_low = z_at(k) - slack_m;
                 const double z_high = z_at(k + 1) + slack_m;
                 const std::array<Vector3, 4> corners{hub(x_low, z_low), hub(x_high, z_low), hub(x_low, z_high),
                                                      hub(x_high, z_high)};
-                if (flyability(i, k) == CellFlyability::flyable &&
+                CellFlyability& flyability = flyability_[place_of(i, k)];
+                if (flyability == CellFlyability::flyable &&
                     !grid_.effect.settings().map->is_flyable_between(corners)) {
-                    flyability(i, k) = CellFlyability::mixed;
+                    flyability = CellFlyability::mixed;
                 }
             }
         }
@@ -183,50 +205,89 @@ class RowsBuilder {
                                    hub(cell.x_low_m + cell.side_m, cell.z_low_m + cell.side_m));
     }
 
-    void add_cell(std::size_t i, std::size_t k) {
-        const CellSquare cell{x_at(i), z_at(k), grid_.side_m};
+    /// Whether the cells of some columns are quiet, with the surfaces above mattering in none: what bounds K over all
+    /// of them bounds it in each.
+    [[nodiscard]] bool is_calm(std::size_t first, std::size_t last) const {
+        constexpr double slack_m = 1e-9;
+        const SidedChange change =
+            max_change(grid_.effect, BoundingBox::around(hub(x_at(first) - slack_m, z_at(first_) - slack_m),
+                                                         hub(x_at(last) + slack_m, z_at(last_) + slack_m)));
+        return is_quiet(grid_.effect, change) && sides_of(change) == CellSides::below;
+    }
+
+    /// @param before the cell added last in this block; nullptr: none   @return the cell that was added
+    const MapCell* add_cell(std::size_t i, std::size_t k, const MapCell* before) {
+        const std::uint32_t number = MapBlock::cell_at(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
         const CellFlyability flyable = flyability(i, k);
+        values_.clear();
+        CellSteps steps;
+        CellSides sides = CellSides::below;
         if (flyable == CellFlyability::forbidden) {
-            rows_.steps.push_back({});
-            rows_.sides.push_back(CellSides::below);
-            rows_.nodes.insert(rows_.nodes.end(), 4, 1.0F);
-            return;
+            values_.assign(4, 1.0F);
+        } else {
+            find_values({x_at(i), z_at(k), grid_.side_m}, flyable, steps, sides);
         }
+        std::vector<float>& nodes = block_->values;
+        const bool is_as_before =
+            before != nullptr && before->steps_x == steps.x && before->steps_z == steps.z &&
+            nodes.size() - before->first_node == values_.size() &&
+            std::equal(values_.begin(), values_.end(), nodes.begin() + static_cast<std::ptrdiff_t>(before->first_node));
+        MapCell& cell = block_->cells[number];
+        cell = {is_as_before ? before->first_node : static_cast<std::uint32_t>(nodes.size()), steps.x, steps.z};
+        block_->flyability[number] = flyable;
+        block_->sides[number] = sides;
+        if (!is_as_before) {
+            nodes.insert(nodes.end(), values_.begin(), values_.end());
+        }
+        return &cell;
+    }
+
+    /// The division and the values of a cell in which somebody may fly.
+    void find_values(const CellSquare& cell, CellFlyability flyable, CellSteps& steps, CellSides& sides) {
         if (flyable == CellFlyability::mixed) {
             middle_ = {cell.x_low_m + 0.5 * cell.side_m, cell.z_low_m + 0.5 * cell.side_m, 0};
             middle_.clearance_m = clearance_m(middle_.x_m, middle_.z_m);
         }
         const CellField& field = flyable == CellFlyability::mixed ? partly_ : everywhere_;
+        if (is_calm_) {
+            append_nodes(cell, steps, field, values_);
+            return;
+        }
         const SidedChange change = max_change(grid_.effect, hubs_in(cell));
-        const CellSides sides = sides_of(change);
-        CellSteps steps = is_quiet(grid_.effect, change) ? CellSteps{} : steps_for(cell, field);
-        rows_.sides.push_back(sides);
+        sides = sides_of(change);
+        steps = is_quiet(grid_.effect, change) ? CellSteps{} : steps_for(cell, field);
         if (sides != CellSides::both) {
-            rows_.steps.push_back(steps);
-            append_nodes(cell, steps, field, rows_.nodes);
+            append_nodes(cell, steps, field, values_);
             return;
         }
         CellField from_above = field;
         from_above.factor = [this](double x, double z) { return patches_.factor(x, z).above; };
         const CellSteps above = steps_for(cell, from_above);
         steps = {std::max(steps.x, above.x), std::max(steps.z, above.z)};
-        rows_.steps.push_back(steps);
-        append_nodes(cell, steps, field, rows_.nodes);
-        append_nodes(cell, steps, from_above, rows_.nodes);
+        append_nodes(cell, steps, field, values_);
+        append_nodes(cell, steps, from_above, values_);
     }
 
     const LayerGrid& grid_;
     double radius_m_;
     double min_clearance_m_;
-    std::size_t first_, last_;
+    std::size_t first_, last_;                ///< rows of cells, to before the last
+    std::vector<CellFlyability> flyability_;  ///< of the cells of the strip, row by row, where it is known
+    std::vector<bool> is_known_;              ///< of each block
+    ColumnRange wanted_{};                    ///< where classify() looks
+    double shortest_turn_m_;
     CellField everywhere_, partly_;
-    CellRows rows_;
     FactorPatches patches_;
+    std::shared_ptr<OwnedBlock> block_;  ///< the block that is being filled
+    bool is_calm_ = false;               ///< is_calm() of its columns
+    std::vector<float> values_;          ///< of the cell that is being added
     struct Middle {
         double x_m, z_m, clearance_m;
     };
     Middle middle_{};  ///< the middle of the present cell, when it is mixed
 };
+
+namespace {
 
 /// Largest |dK/d(z/R)| of one side from a distance on.
 double steepest(const EffectCurve& curve, double from_radii) {
@@ -248,13 +309,20 @@ double steepest(const EffectCurve& curve, double from_radii) {
 
 }  // namespace
 
-CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last) {
-    return RowsBuilder(grid, first, last).build();
+StripBuilder::StripBuilder(const LayerGrid& grid, std::size_t row) : impl_(std::make_unique<Impl>(grid, row)) {}
+
+StripBuilder::~StripBuilder() = default;
+
+void StripBuilder::look_at_all() {
+    impl_->look_at_all();
 }
 
-CellRows rebuild_rows(const LayerGrid& grid, std::size_t first, std::size_t last, const LayerBefore& before,
-                      ColumnRange& columns) {
-    return RowsBuilder(grid, first, last).rebuild(before, columns);
+BlockFlyability StripBuilder::flyability_of(std::size_t column) {
+    return impl_->flyability_of(column);
+}
+
+std::shared_ptr<const MapBlock> StripBuilder::block(std::size_t column) {
+    return impl_->block(column);
 }
 
 double longest_cell_side_m(const DirectEffect& effect) {

@@ -2,37 +2,43 @@
 
 // Private to aeromap.
 
+#include <array>
 #include <cstddef>
-#include <vector>
+#include <memory>
 
-#include "downwash/aeromap/cell_refinement.hpp"
 #include "downwash/aeromap/layer_grid.hpp"
 #include "downwash/aeromap/map_view.hpp"
 
 namespace downwash {
 
-/// Some rows of cells, as they will stand in the layer.
-struct CellRows {
-    std::vector<CellSteps> steps;
-    std::vector<CellFlyability> flyability;
-    std::vector<CellSides> sides;
-    /// K at the nodes of one cell after the other: of all surfaces, then of those above where both matter.
-    std::vector<float> nodes;
+/// The flyability of the cells of a block, those beyond the end of the layer forbidden.
+using BlockFlyability = std::array<CellFlyability, MapBlock::cell_count>;
+
+/// Fills the blocks of one strip of a layer: a row of blocks. A block is a pure function of layer and number: of what
+/// is over and under its own cells and those of the block to its right, whose parabolas answer for their common edge,
+/// and of the flyability of both. Blocks that one builder fills share what was evaluated, which changes no value. For
+/// one thread.
+class StripBuilder {
+ public:
+    /// @param row number of the strip, from the lowest   @pre the grid outlives the builder
+    StripBuilder(const LayerGrid& grid, std::size_t row);
+    ~StripBuilder();
+    StripBuilder(const StripBuilder&) = delete;
+    StripBuilder& operator=(const StripBuilder&) = delete;
+
+    /// Finds the flyability of all cells at once, which is sooner done than for most blocks one by one.
+    void look_at_all();
+
+    /// @param column number of the block in its strip   @throws WorkStopped when it is over before that is known
+    [[nodiscard]] BlockFlyability flyability_of(std::size_t column);
+
+    /// @param column number of the block in its strip   @throws WorkStopped when it is over before the block is filled
+    [[nodiscard]] std::shared_ptr<const MapBlock> block(std::size_t column);
+
+ private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
 };
-
-/// A layer before a part of its scene changed.
-struct LayerBefore {
-    ColumnRange changed;               ///< columns in which K may differ
-    const CellFlyability* flyability;  ///< flyability of the cells of the layer, row by row
-};
-
-/// Rows [first, last) of a layer. @throws WorkStopped when it is over before they are built
-[[nodiscard]] CellRows build_rows(const LayerGrid& grid, std::size_t first, std::size_t last);
-
-/// Builds a layer of which a part has changed: the values are those of the columns that are not as before.
-/// @param[out] columns which these are
-[[nodiscard]] CellRows rebuild_rows(const LayerGrid& grid, std::size_t first, std::size_t last,
-                                    const LayerBefore& before, ColumnRange& columns);
 
 /// The longest cell side for which max_steps resolve the steepest curve of the effect, at least R / 50; at most 0.45
 /// R, so that the probes of a cell miss nothing of the disc's size.

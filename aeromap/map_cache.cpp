@@ -4,21 +4,27 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <map>
 #include <string_view>
 
 #include "downwash/base/files.hpp"
 #include "downwash/base/sha256.hpp"
 
-// A file of the cache: a head that says what it is, a map's bytes, and the SHA-256 of both.
+// A file of the cache: a head that says what it is, the bytes of some blocks of a map, and the SHA-256 of both. Its
+// name: the map's key, a dash, and the beginning of the digest, so that programs that write the same write the same
+// file.
 
 namespace downwash {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t max_files = 32;
+constexpr std::size_t max_maps = 32;
+/// As many files of one map are merged.
+constexpr std::size_t many_files = 8;
 constexpr std::uintmax_t max_bytes = 1'000'000'000;
 constexpr std::size_t digest_letters = 64;
+constexpr std::size_t letters_in_name = 16;  // of the digest
 constexpr std::string_view extension = ".aeromap";
 /// A file that was not finished for so long never will be.
 constexpr auto abandoned_after = std::chrono::hours(1);
@@ -40,33 +46,96 @@ std::string_view checked_content(std::string_view file, const std::string& head)
     return file.substr(digested.size()) == sha256_hex(digested) ? digested.substr(head.size()) : std::string_view();
 }
 
-struct CachedFile {
-    fs::path path;
-    fs::file_time_type used;
-    std::uintmax_t bytes;
+/// The files of a map.
+std::vector<fs::path> files_of(const fs::path& folder, const std::string& key) {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with(key + '-') && name.ends_with(extension)) {
+            files.push_back(entry.path());
+        }
+    }
+    return files;
+}
+
+/// Writes some blocks of a map; the name of their file.
+fs::path write_blocks(const fs::path& folder, const std::string& key, const std::string& blocks) {
+    std::string file = head_of(key) + blocks;
+    const std::string digest = sha256_hex(file);
+    file += digest;
+    fs::path path = folder / (key + '-' + digest.substr(0, letters_in_name) + std::string(extension));
+    write_file(path, file);
+    return path;
+}
+
+/// Adds the blocks of a file to a map; false if it is not a sound file of this map.
+bool read_blocks(const fs::path& path, const std::string& key, AeroMap& map) {
+    try {
+        const std::string file = read_file(path, max_bytes);
+        return map.add_bytes(checked_content(file, head_of(key)));
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
+/// Replaces the files of a map by one. What another program adds meanwhile stays beside it, and what it merges at the
+/// same time is in its file.
+void merge(const fs::path& folder, const std::string& key, const AeroMap& map) {
+    AeroMap all(map.layers(), map.plane(), map.extent());
+    std::vector<fs::path> merged = files_of(folder, key);
+    std::erase_if(merged, [&](const fs::path& path) { return !read_blocks(path, key, all); });
+    const fs::path whole = write_blocks(folder, key, all.to_bytes());
+    for (const fs::path& path : merged) {
+        if (path != whole) {
+            fs::remove(path);
+        }
+    }
+}
+
+/// A map in the cache, or what is called like one.
+struct CachedMap {
+    std::vector<fs::path> files;
+    fs::file_time_type used = fs::file_time_type::min();
+    std::uintmax_t bytes = 0;
 };
 
-/// Removes what was not used for longest until the rest may stay, and what others left unfinished.
+/// Removes the maps that were not used for longest until the rest may stay, and what others left unfinished.
 void trim(const fs::path& folder) {
-    std::vector<CachedFile> files;
+    std::map<std::string, CachedMap> by_key;
     std::uintmax_t bytes = 0;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
         const bool is_unfinished = name.ends_with(".part") && name.find(extension) != std::string::npos;
-        if (!entry.is_regular_file() || !(is_unfinished || name.ends_with(extension))) {
+        std::error_code ignored;
+        if (!entry.is_regular_file(ignored) || !(is_unfinished || name.ends_with(extension))) {
+            continue;
+        }
+        std::error_code gone;  // another program may have removed it
+        const fs::file_time_type used = entry.last_write_time(gone);
+        const std::uintmax_t size = gone ? 0 : entry.file_size(gone);
+        if (gone) {
             continue;
         }
         if (!is_unfinished) {
-            files.push_back({entry.path(), entry.last_write_time(), entry.file_size()});
-            bytes += files.back().bytes;
-        } else if (entry.last_write_time() < fs::file_time_type::clock::now() - abandoned_after) {
+            CachedMap& map = by_key[name.substr(0, name.find_first_of("-."))];
+            map.files.push_back(entry.path());
+            map.used = std::max(map.used, used);
+            map.bytes += size;
+            bytes += size;
+        } else if (used < fs::file_time_type::clock::now() - abandoned_after) {
             fs::remove(entry.path());
         }
     }
-    std::sort(files.begin(), files.end(), [](const CachedFile& a, const CachedFile& b) { return a.used < b.used; });
-    for (std::size_t oldest = 0; files.size() - oldest > max_files || bytes > max_bytes; ++oldest) {
-        fs::remove(files[oldest].path);
-        bytes -= files[oldest].bytes;
+    std::vector<CachedMap> maps;
+    for (auto& [key, map] : by_key) {
+        maps.push_back(std::move(map));
+    }
+    std::sort(maps.begin(), maps.end(), [](const CachedMap& a, const CachedMap& b) { return a.used < b.used; });
+    for (std::size_t oldest = 0; maps.size() - oldest > max_maps || bytes > max_bytes; ++oldest) {
+        for (const fs::path& path : maps[oldest].files) {
+            fs::remove(path);
+        }
+        bytes -= maps[oldest].bytes;
     }
 }
 
@@ -76,16 +145,16 @@ std::shared_ptr<const AeroMap> MapCache::find(const std::vector<MapLayer>& layer
                                               const Bounds& extent) const noexcept {
     try {
         const std::string key = map_key(layers, plane, extent);
-        const fs::path path = folder_ / (key + std::string(extension));
-        const std::string file = read_file(path, max_bytes);
-        const std::string_view content = checked_content(file, head_of(key));
-        std::optional<AeroMap> map = AeroMap::from_bytes(layers, plane, extent, content);
-        if (!map) {
-            return nullptr;
+        auto map = std::make_shared<AeroMap>(layers, plane, extent);
+        bool is_found = false;
+        for (const fs::path& path : files_of(folder_, key)) {
+            if (read_blocks(path, key, *map)) {
+                is_found = true;
+                std::error_code ignored;
+                fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
+            }
         }
-        std::error_code ignored;
-        fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
-        return std::make_shared<const AeroMap>(*std::move(map));
+        return is_found ? map : nullptr;
     } catch (const std::exception&) {
         return nullptr;
     }
@@ -93,14 +162,19 @@ std::shared_ptr<const AeroMap> MapCache::find(const std::vector<MapLayer>& layer
 
 bool MapCache::keep(const AeroMap& map) const noexcept {
     try {
-        const std::string key = map_key(map.layers(), map.plane(), map.extent());
-        std::string file = head_of(key) + map.to_bytes();
-        file += sha256_hex(file);
-        if (file.size() > max_bytes) {
+        const std::string blocks = map.take_new_bytes();
+        if (blocks.empty()) {
+            return true;
+        }
+        if (blocks.size() > max_bytes / 2) {
             return false;
         }
+        const std::string key = map_key(map.layers(), map.plane(), map.extent());
         fs::create_directories(folder_);
-        write_file(folder_ / (key + std::string(extension)), file);
+        write_blocks(folder_, key, blocks);
+        if (files_of(folder_, key).size() >= many_files) {
+            merge(folder_, key, map);
+        }
         trim(folder_);
         return true;
     } catch (const std::exception&) {
@@ -109,19 +183,19 @@ bool MapCache::keep(const AeroMap& map) const noexcept {
 }
 
 std::shared_ptr<const AeroMap> cached_map(const fs::path& folder, const std::vector<MapLayer>& layers,
-                                          const PlaneOfMotion& plane, const Bounds& extent, int threads,
-                                          const std::function<void(double)>& on_progress,
-                                          const StopCondition& is_over) {
-    if (folder.empty()) {
-        return std::make_shared<const AeroMap>(layers, plane, extent, threads, on_progress, is_over);
+                                          const PlaneOfMotion& plane, const Bounds& extent) {
+    if (!folder.empty()) {
+        if (auto map = MapCache(folder).find(layers, plane, extent)) {
+            return map;
+        }
     }
-    const MapCache cache(folder);
-    if (auto map = cache.find(layers, plane, extent)) {
-        return map;
+    return std::make_shared<const AeroMap>(layers, plane, extent);
+}
+
+void keep_map(const fs::path& folder, const AeroMap& map) noexcept {
+    if (!folder.empty()) {
+        MapCache(folder).keep(map);
     }
-    auto map = std::make_shared<const AeroMap>(layers, plane, extent, threads, on_progress, is_over);
-    cache.keep(*map);
-    return map;
 }
 
 }  // namespace downwash

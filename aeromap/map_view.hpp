@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "downwash/base/export.hpp"
+
 namespace downwash {
 
 /// Whether a whole map cell lies inside the flyable area, outside it, or needs the exact test.
@@ -24,22 +26,65 @@ struct MapCell {
     return (cell.steps_x + std::size_t{1}) * (cell.steps_z + std::size_t{1});
 }
 
+/// Eight by eight cells of a layer, and their values: what a map fills at once. Where the layer ends within a block,
+/// the cells beyond its end are never looked up.
+struct MapBlock {
+    static constexpr std::uint32_t side_cells = 8;
+    static constexpr std::uint32_t cell_count = side_cells * side_cells;
+
+    MapCell cells[cell_count];              ///< x running fastest
+    CellFlyability flyability[cell_count];  ///< one for each cell
+    CellSides sides[cell_count];            ///< one for each cell
+    /// K, x running fastest within a cell. Behind it, where both sides matter, as many values of the surfaces above.
+    /// A cell that has the values of the one before it shares them.
+    const float* nodes;
+    std::uint32_t nodes_size;
+
+    /// Number of the cell in column i and row k of the layer.
+    [[nodiscard, gnu::always_inline]] static std::uint32_t cell_at(std::uint32_t i, std::uint32_t k) noexcept {
+        return k % side_cells * side_cells + i % side_cells;
+    }
+};
+
+class MapBlocks;
+
 /// A layer of an AeroMap as plain arrays, for code that follows flights through it. Functions that kernels for wide
 /// instructions call are always inlined, so that no copy that only some processors can run reaches the linker.
 struct MapView {
     double x_low_m, z_low_m, cells_per_m;
-    std::uint32_t columns, rows;
-    const MapCell* cells;              ///< x running fastest
-    const CellFlyability* flyability;  ///< one for each cell
-    const CellSides* sides;            ///< one for each cell
-    /// K, x running fastest within a cell. Behind it, where both sides matter, as many values of the surfaces above.
-    const float* nodes;
+    std::uint32_t columns, rows;    ///< of cells
+    std::uint32_t block_columns;    ///< blocks side by side
+    const MapBlock* const* blocks;  ///< the layer's blocks, x running fastest; null until somebody asks for one
+    MapBlocks* source;              ///< who fills them
+    std::size_t layer;
 
     /// Whether a place, in cells from the lower corner, has a cell; false for NaN.
     [[nodiscard, gnu::always_inline]] bool contains(double u, double w) const noexcept {
         return u >= 0 && w >= 0 && u < columns && w < rows;
     }
 };
+
+/// A block of a layer that may not be there yet. Any number of threads may ask; see BlockStore.
+[[nodiscard]] DOWNWASH_EXPORT const MapBlock& filled_block(const MapView& view, std::size_t number);
+
+/// The number of the block around a place given in cells from the layer's lower corner.
+/// @pre view.contains(u, w)
+[[nodiscard, gnu::always_inline]] inline std::size_t block_number(const MapView& view, double u, double w) noexcept {
+    const std::size_t column = static_cast<std::uint32_t>(u) / MapBlock::side_cells;
+    const std::size_t row = static_cast<std::uint32_t>(w) / MapBlock::side_cells;
+    return row * view.block_columns + column;
+}
+
+/// The block around a place given in cells from the layer's lower corner, filled if nobody has asked for it before.
+/// @pre view.contains(u, w)
+[[nodiscard, gnu::always_inline]] inline const MapBlock& block_around(const MapView& view, double u, double w) {
+    const std::size_t number = block_number(view, u, w);
+    const MapBlock* const block = __atomic_load_n(view.blocks + number, __ATOMIC_ACQUIRE);
+    if (block == nullptr) [[unlikely]] {
+        return filled_block(view, number);
+    }
+    return *block;
+}
 
 /// One interval of a cell's grid, between four neighbouring values, where K is bilinear. A flight stays in one for
 /// several ticks and saves the look-up.
@@ -54,25 +99,25 @@ struct MapPatch {
 /// A patch without any place in it.
 inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, {1, 1, 1, 1}, CellFlyability::mixed};
 
-/// The patch around a place given in cells from the layer's lower corner.
-/// @pre view.contains(u, w)
-[[nodiscard, gnu::always_inline]] inline MapPatch patch_at(const MapView& view, double u, double w) noexcept {
+/// The patch of a block around a place given in cells from the layer's lower corner.
+/// @pre the block is the one around the place
+[[nodiscard, gnu::always_inline]] inline MapPatch patch_in(const MapBlock& block, double u, double w) noexcept {
     // u - i is exact and less than 1, and so is its product with a power of two: no index can leave its cell.
     const auto i = static_cast<std::uint32_t>(u);
     const auto k = static_cast<std::uint32_t>(w);
-    const std::size_t number = std::size_t{k} * view.columns + i;
-    const MapCell& cell = view.cells[number];
+    const std::uint32_t number = MapBlock::cell_at(i, k);
+    const MapCell& cell = block.cells[number];
     const auto a = static_cast<std::uint32_t>((u - i) * cell.steps_x);
     const auto b = static_cast<std::uint32_t>((w - k) * cell.steps_z);
-    const float* lower = view.nodes + cell.first_node + std::size_t{b} * (cell.steps_x + 1U) + a;
+    const float* lower = block.nodes + cell.first_node + std::size_t{b} * (cell.steps_x + 1U) + a;
     const float* upper = lower + cell.steps_x + 1U;
     const double steps_x = cell.steps_x;
     const double steps_z = cell.steps_z;
     MapPatch patch{i + a / steps_x,  // exact, as all that follows from it
-                   k + b / steps_z,        steps_x, steps_z, {lower[0], lower[1], upper[0], upper[1]}, {1, 1, 1, 1},
-                   view.flyability[number]};
-    if (view.sides[number] != CellSides::below) {
-        const std::size_t behind = view.sides[number] == CellSides::both ? node_count(cell) : 0;
+                   k + b / steps_z,         steps_x, steps_z, {lower[0], lower[1], upper[0], upper[1]}, {1, 1, 1, 1},
+                   block.flyability[number]};
+    if (block.sides[number] != CellSides::below) {
+        const std::size_t behind = block.sides[number] == CellSides::both ? node_count(cell) : 0;
         lower += behind;
         upper += behind;
         patch.above[0] = lower[0];
@@ -81,6 +126,12 @@ inline constexpr MapPatch no_patch{HUGE_VAL, HUGE_VAL, 1, 1, {}, {1, 1, 1, 1}, C
         patch.above[3] = upper[1];
     }
     return patch;
+}
+
+/// The patch around a place given in cells from the layer's lower corner.
+/// @pre view.contains(u, w)
+[[nodiscard, gnu::always_inline]] inline MapPatch patch_at(const MapView& view, double u, double w) {
+    return patch_in(block_around(view, u, w), u, w);
 }
 
 /// K at the share (s, t) of a patch, each in [0, 1). One template over the lane type.

@@ -225,14 +225,9 @@ Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, co
     return run;
 }
 
-/// Whether the cache holds the map of a problem.
+/// Whether the cache holds the whole map of a problem.
 bool is_in_cache(const Problem& problem, const std::filesystem::path& cache) {
-    bool is_built = cache.empty();
-    if (!is_built) {
-        static_cast<void>(make_flight_model(problem)->make_map(
-            problem.bounds, 1, [&is_built](double) { is_built = true; }, cache));
-    }
-    return !is_built;
+    return !cache.empty() && make_flight_model(problem)->make_map(problem.bounds, cache)->filled_share() == 1;
 }
 
 static_assert(static_cast<int>(RunStatus::none) == static_cast<int>(Status::none));
@@ -322,9 +317,10 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
                 options.on_map_progress(problem.name, share);
             }
         };
-        auto map = (plans_need_map(problem) || is_evaluated) && problem.aero.enabled && !options.stop.stop_requested()
-                       ? make_flight_model(problem)->make_map(problem.bounds, jobs, on_map_progress, options.map_cache)
-                       : nullptr;
+        auto map =
+            (plans_need_map(problem) || is_evaluated) && problem.aero.enabled && !options.stop.stop_requested()
+                ? make_flight_model(problem)->make_whole_map(problem.bounds, jobs, on_map_progress, options.map_cache)
+                : nullptr;
         const auto evaluation = is_evaluated && !options.stop.stop_requested()
                                     ? std::make_shared<PlanEvaluation>(judging, plan.evaluation_worlds, map)
                                     : nullptr;

@@ -107,7 +107,7 @@ def row(program, folder, pieces, obstacles):
 
 def table(title, first):
     print(f"## {title}\n")
-    print(f"| {first} | file [MiB] | read and check [s] | memory [MiB] | map [s] | first plan [s] | "
+    print(f"| {first} | file [MiB] | read and check [s] | memory [MiB] | filling the map, both threads [s] | first plan [s] | "
           f"iterations in {SEARCH_S} s | memory [MiB] |")
     print("| ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |", flush=True)
 

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "downwash/aeromap/map_cache.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/stop_condition.hpp"
 #include "downwash/planner/braking.hpp"
@@ -242,7 +243,7 @@ std::shared_ptr<const AeroMap> Planner::map_around(const Bounds& places) const {
     if (map_ && !map_->is_touched(unmapped_, rotor_extent(problem_.robot.rotors, places))) {
         return map_;
     }
-    return model_->make_map(places, options_.threads);
+    return model_->make_map(places);
 }
 
 Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options) {
@@ -295,9 +296,9 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
 void Planner::find_better(Call& call, const Plan& left, bool has_plan) {
     const StopCondition is_over = [&call] { return call.options.stop.stop_requested(); };
     throw_if_over(is_over);
+    const bool is_first_map = problem_.aero.enabled && !map_;
     if (problem_.aero.enabled && (!map_ || !unmapped_.empty())) {
-        map_ = map_ ? model_->remake_map(*map_, unmapped_, options_.threads, is_over)
-                    : model_->make_map(problem_.bounds, options_.threads, {}, options_.map_cache, is_over);
+        map_ = map_ ? model_->remake_map(*map_, unmapped_) : model_->make_map(problem_.bounds, options_.map_cache);
         unmapped_.clear();
     }
     double cost = 0;
@@ -305,6 +306,9 @@ void Planner::find_better(Call& call, const Plan& left, bool has_plan) {
         publish(call, {Advice::keep, left, cost, 0, {}});
     }
     search(call, left);
+    if (is_first_map) {
+        keep_map(options_.map_cache, *map_);
+    }
 }
 
 void Planner::search(Call& call, const Plan& left) {

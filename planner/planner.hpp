@@ -51,8 +51,7 @@ struct Answer {
 /// How to replan. Its functions must not throw.
 struct ReplanOptions {
     /// Wall time of the whole call [s], at most 10^6, and iterations of the search, at most 10^15. With iterations
-    /// alone the result does not depend on how fast the machine is. A new aero map that the search needs is completed
-    /// even past the time limit.
+    /// alone the result does not depend on how fast the machine is.
     std::optional<double> time_limit_s;
     std::optional<std::uint64_t> max_iterations;
     std::stop_token stop;  ///< ends the call early, once it is known how to stop

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "downwash/aeromap/map_cache.hpp"
 #include "downwash/planner/any_order.hpp"
 #include "downwash/planner/direct_flight.hpp"
 #include "downwash/planner/goals_in_order.hpp"
@@ -16,7 +17,6 @@ namespace {
 
 /// The map of surface effects, through which MP-ARM-ADA plans and the certificates and stops of every variant are
 /// flown; nullptr where none is needed.
-/// @throws WorkStopped when a stop is requested before it is built
 std::shared_ptr<const AeroMap> map_for(const Problem& problem, const FlightModel& model, const SolveOptions& options) {
     if (!needs_map(problem, options.finds_stops)) {
         return nullptr;
@@ -26,9 +26,7 @@ std::shared_ptr<const AeroMap> map_for(const Problem& problem, const FlightModel
             "SolveOptions::map is of another scene, robot, model or bounds: expected a map of the same problem, or "
             "none");
     }
-    return options.map ? options.map
-                       : model.make_map(problem.bounds, options.threads, options.on_map_progress, options.map_cache,
-                                        [&options] { return options.stop.stop_requested(); });
+    return options.map ? options.map : model.make_map(problem.bounds, options.map_cache);
 }
 
 planning::DirectFlight flown(const Problem& problem, const FlightModel& model, const Plan& plan,
@@ -58,14 +56,14 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
     try {
         const planning::Stopwatch map_clock;
         solution.map = map_for(problem, *plannable.model, options);
-        const double map_wall_s = solution.map ? map_clock.seconds() : 0;
+        const double reading_wall_s = solution.map ? map_clock.seconds() : 0;
+        const double filling_before_s = solution.map ? solution.map->filling_s() : 0;
         const double setup_wall_s = since_call.seconds();
         const planning::PlannerModel own(problem.planner.variant, plannable.model, solution.map);
         planning::SearchResult result = problem.targets.empty() ? planning::search_in_order(problem, own, options)
                                                                 : planning::search_in_any_order(problem, own, options);
         static_cast<Found&>(solution) = std::move(result.found);
         solution.planning = std::move(result.record);
-        solution.planning.map_wall_s = map_wall_s;
         solution.planning.setup_wall_s = setup_wall_s;
 
         const Problem visited = in_order(problem, solution.order);
@@ -74,7 +72,13 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
             solution.execution = std::move(flight.execution);
             solution.flight_wall_s = flight.wall_s;
         }
+        if (solution.map) {
+            solution.planning.map_wall_s = reading_wall_s + (solution.map->filling_s() - filling_before_s);
+        }
     } catch (const WorkStopped&) {  // there is what was found before
+    }
+    if (solution.map && !options.map) {
+        keep_map(options.map_cache, *solution.map);
     }
     solution.interrupted = options.stop.stop_requested();
     if (solution.execution) {

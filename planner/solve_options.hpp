@@ -40,14 +40,11 @@ struct FoundPlan {
 
 /// How a program takes part in a search. Its functions must not throw.
 struct SolveOptions {
-    int threads = 1;       ///< threads for flights and the aero map, below 1 as 1; the result does not depend on it
+    int threads = 1;       ///< threads for flights, below 1 as 1; the result does not depend on it
     std::stop_token stop;  ///< ends the search early, with the best plan so far
     std::function<void(const Progress&)> on_progress;  ///< called by solve()'s thread, ten times a second
     /// Called by solve()'s thread with each plan that counts and is better than the last.
     std::function<void(const FoundPlan&)> on_plan;
-    /// Called from the calling thread while the aero map is built, with the share of it that is begun; not where a map
-    /// is reused.
-    std::function<void(double)> on_map_progress;
     /// What the search knows before it begins, as from a search for the same goal from another start or in another
     /// scene: a plan, whose ticks begin with the search, is flown from the start first and refined if nothing rejects
     /// it; places are tried before random ones, in their order. Of a problem with a single goal; rrt-star only.
@@ -58,9 +55,11 @@ struct SolveOptions {
     /// cheaper ones; takes a moment for each plan that counts.
     bool finds_stops = false;
     bool keep_tree = false;  ///< also gives the search tree
-    /// Reuses a map of the same problem, else std::invalid_argument; built when empty.
+    /// Reuses a map of the same problem, else std::invalid_argument. The search fills what it needs of it.
     std::shared_ptr<const AeroMap> map;
-    std::filesystem::path map_cache;  ///< folder in which maps are kept between runs; empty: nowhere
+    /// Without a map of the caller's: folder from which a map's blocks are read, and in which those that the search
+    /// filled are kept; empty: nowhere.
+    std::filesystem::path map_cache;
 };
 
 }  // namespace downwash

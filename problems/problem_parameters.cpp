@@ -249,7 +249,7 @@ void add_planner(Rows& rows) {
     append(
         rows,
         {number("planner.time_limit_s",
-                "for the search alone, without aero map and last flight; null: 10 s, or none where max_iterations "
+                "for the search alone, without the last flight; null: 10 s, or none where max_iterations "
                 "is set",
                 of(&Settings::time_limit_s))
              .above(0)

@@ -12,7 +12,8 @@ namespace downwash::simulation {
 
 /// The effects of surfaces in their nominal places on a level vehicle: a field over the plane of motion [m].
 /// - `at_rotor(rotor, x_m, z_m)`: K by side of a rotor with its hub there
-/// - `same_as(rotor)`: the earliest rotor that is known to have the same K, perhaps that rotor itself
+/// - `same_as(rotor)`: the earliest rotor that is known to have the same K, perhaps that rotor itself; where the
+///   earlier rotors were asked for last
 /// - `at_body(x_m, z_m)`: K by side of the body with the centre between its rotors there, where there is a fountain
 /// - `wall_nearness(x_m, z_m)`: how near walls are to that centre, from -1 (behind) to 1 (ahead)
 /// - `as_read()`: the field that a control law reads
@@ -71,19 +72,23 @@ class FlightEffect {
 template <EffectField<double> Field>
 class FlightEffectOf final : public FlightEffect {
  public:
-    explicit FlightEffectOf(const Field& field) : field_(field) {
-        for (int i = 0; i < max_rotors; ++i) {
-            same_as_[i] = field_.same_as(i);
-        }
-    }
+    explicit FlightEffectOf(const Field& field) : field_(field) { note_equal_rotors(); }
 
     SidedFactor<double> at_rotor(int rotor, double x_m, double z_m) override {
-        return field_.at_rotor(rotor, x_m, z_m);
+        const SidedFactor<double> k = field_.at_rotor(rotor, x_m, z_m);
+        note_equal_rotors();
+        return k;
     }
     SidedFactor<double> at_body(double x_m, double z_m) override { return field_.at_body(x_m, z_m); }
     double wall_nearness(double x_m, double z_m) override { return field_.wall_nearness(x_m, z_m); }
 
  private:
+    void note_equal_rotors() {
+        for (int i = 0; i < max_rotors; ++i) {
+            same_as_[i] = field_.same_as(i);
+        }
+    }
+
     Field field_;
 };
 

@@ -58,16 +58,23 @@ double FlightModel::executed_clearance_m(const PlanarPose& pose) const {
     return clearance_m > 0 ? clearance_m : least_apart_m;
 }
 
-std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, int threads,
-                                                     const std::function<void(double)>& on_progress,
-                                                     const std::filesystem::path& cache,
-                                                     const StopCondition& is_over) const {
-    return cached_map(cache, layers(), plane_, rotor_extent(robot_.rotors, bounds), threads, on_progress, is_over);
+std::shared_ptr<const AeroMap> FlightModel::make_map(const Bounds& bounds, const std::filesystem::path& cache) const {
+    return cached_map(cache, layers(), plane_, rotor_extent(robot_.rotors, bounds));
 }
 
-std::shared_ptr<const AeroMap> FlightModel::remake_map(const AeroMap& before, const std::vector<BoundingBox>& changed,
-                                                       int threads, const StopCondition& is_over) const {
-    return std::make_shared<const AeroMap>(before.rebuilt(layers(), changed, threads, is_over));
+std::shared_ptr<const AeroMap> FlightModel::make_whole_map(const Bounds& bounds, int threads,
+                                                           const std::function<void(double)>& on_progress,
+                                                           const std::filesystem::path& cache,
+                                                           const StopCondition& is_over) const {
+    auto map = make_map(bounds, cache);
+    map->fill(threads, on_progress, is_over);
+    keep_map(cache, *map);
+    return map;
+}
+
+std::shared_ptr<const AeroMap> FlightModel::remake_map(const AeroMap& before,
+                                                       const std::vector<BoundingBox>& changed) const {
+    return std::make_shared<const AeroMap>(before.rebuilt(layers(), changed));
 }
 
 bool FlightModel::matches(const AeroMap& map, const Bounds& bounds) const {

@@ -84,18 +84,23 @@ class DOWNWASH_EXPORT FlightModel {
         return sided_factor(rotor, x_m, z_m).all;
     }
 
-    /// The map over every rotor position that a vehicle within the bounds can reach, at any pitch.
-    /// @param on_progress,is_over see AeroMap   @param cache folder in which maps are kept between runs; empty: nowhere
-    [[nodiscard]] std::shared_ptr<const AeroMap> make_map(const Bounds& bounds, int threads = 1,
-                                                          const std::function<void(double)>& on_progress = {},
-                                                          const std::filesystem::path& cache = {},
-                                                          const StopCondition& is_over = {}) const;
+    /// The map over every rotor position that a vehicle within the bounds can reach, at any pitch. It fills where
+    /// flights ask.
+    /// @param cache folder in which maps are kept between runs; empty: nowhere
+    [[nodiscard]] std::shared_ptr<const AeroMap> make_map(const Bounds& bounds,
+                                                          const std::filesystem::path& cache = {}) const;
 
-    /// Makes the map anew from that of the scene before parts of it changed; see AeroMap::rebuilt().
+    /// The same, filled as a whole and kept in the cache: for measurements that no filling may disturb.
+    /// @param threads,on_progress,is_over see AeroMap::fill()
+    [[nodiscard]] std::shared_ptr<const AeroMap> make_whole_map(const Bounds& bounds, int threads = 1,
+                                                                const std::function<void(double)>& on_progress = {},
+                                                                const std::filesystem::path& cache = {},
+                                                                const StopCondition& is_over = {}) const;
+
+    /// The map of this scene from that of the scene before parts of it changed; see AeroMap::rebuilt().
     /// @param before map of the same robot, model and bounds   @param changed boxes around the parts, before and after
     [[nodiscard]] std::shared_ptr<const AeroMap> remake_map(const AeroMap& before,
-                                                            const std::vector<BoundingBox>& changed, int threads = 1,
-                                                            const StopCondition& is_over = {}) const;
+                                                            const std::vector<BoundingBox>& changed) const;
 
     /// Whether a map is the one that make_map() makes for these bounds.
     [[nodiscard]] bool matches(const AeroMap& map, const Bounds& bounds) const;

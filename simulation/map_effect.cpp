@@ -7,7 +7,7 @@ namespace downwash::simulation {
 
 RotorMaps rotor_maps(const FlightModel& model, const AeroMap& map) {
     const PlantModel& plant = model.tick().plant;
-    RotorMaps maps{&map, {}, {}, {}};
+    RotorMaps maps{&map, {}, {}, {}, {}};
     const auto fill = [&](int place, std::size_t layer) {
         maps.view[place] = map.view(layer);
         maps.layer[place] = layer;
@@ -24,10 +24,12 @@ RotorMaps rotor_maps(const FlightModel& model, const AeroMap& map) {
     for (int i = 0; i < plant.rotor_count; ++i) {
         maps.same_as[i] = i;
         for (int j = i; j-- > 0;) {
-            if (plant.rotor_x_m[i] == plant.rotor_x_m[j] && plant.rotor_z_m[i] == plant.rotor_z_m[j] &&
-                map.are_equal(model.rotor_layer(i), model.rotor_layer(j))) {
+            if (plant.rotor_x_m[i] == plant.rotor_x_m[j] && plant.rotor_z_m[i] == plant.rotor_z_m[j]) {
                 maps.same_as[i] = j;
             }
+        }
+        if (maps.same_as[i] != i) {
+            maps.followers[maps.same_as[i]] |= 1U << static_cast<unsigned int>(i);
         }
     }
     return maps;

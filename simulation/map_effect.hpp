@@ -20,9 +20,10 @@ struct RotorMaps {
     const AeroMap* map;
     MapView view[max_rotors + 2];  ///< map of every rotor; at body_place and wall_place those of the body and of walls
     std::size_t layer[max_rotors + 2];  ///< layer of the map, in the same order
-    /// The earliest rotor, or the rotor itself, that shares its look-up: rotors one behind the other as seen along the
-    /// lateral axis, where their layers hold the same.
+    /// The earliest rotor, or the rotor itself, whose look-up serves wherever the blocks of both layers hold the same:
+    /// rotors one behind the other as seen along the lateral axis.
     int same_as[max_rotors];
+    unsigned int followers[max_rotors + 2];  ///< the other rotors that may be served by one, as bits
 
     static constexpr int body_place = max_rotors;      ///< filled where there is a fountain
     static constexpr int wall_place = max_rotors + 1;  ///< filled where there are walls
@@ -47,10 +48,14 @@ class MapEffect {
                 enter(nowhere, patches, lane);
             }
         }
+        for (int rotor = 0; rotor < max_rotors; ++rotor) {
+            same_as_[rotor] = maps_.same_as[rotor];
+        }
     }
 
     SidedFactor<T> at_rotor(int rotor, const T& x_m, const T& z_m) { return at_place(rotor, x_m, z_m); }
-    [[nodiscard]] int same_as(int rotor) const { return maps_.same_as[rotor]; }
+    /// Holds for the place where the earlier rotor was looked up last.
+    [[nodiscard]] int same_as(int rotor) const { return same_as_[rotor]; }
     SidedFactor<T> at_body(const T& x_m, const T& z_m) { return at_place(RotorMaps::body_place, x_m, z_m); }
     T wall_nearness(const T& x_m, const T& z_m) { return at_place(RotorMaps::wall_place, x_m, z_m).all - T(1); }
     MapEffect& as_read() { return *this; }
@@ -75,6 +80,7 @@ class MapEffect {
         double corner[4][width], above[4][width];
         double doubt[width];          ///< 0 where the cell is flyable throughout
         unsigned int have_above = 0;  ///< the lanes, as bits, whose patch has a part from above
+        unsigned int apart = 0;       ///< the lanes, as bits, in which a follower needs a look-up of its own
     };
 
     /// Where the lanes are in cells from the lower corner of a layer, and as shares of the patches.
@@ -134,6 +140,25 @@ class MapEffect {
         return {interpolated(patches.corner, at), patches.have_above != 0 ? interpolated(patches.above, at) : T(1)};
     }
 
+    /// A block by its number in a layer, filled if need be.
+    static const MapBlock& block_in(const MapView& view, std::size_t number) {
+        const MapBlock* const block = __atomic_load_n(view.blocks + number, __ATOMIC_ACQUIRE);
+        if (block == nullptr) [[unlikely]] {
+            return filled_block(view, number);
+        }
+        return *block;
+    }
+
+    /// Whether some rotors, as bits, have this block at the same place of their layers, which have the same grid.
+    bool all_followers_have(const MapBlock& block, std::size_t number, unsigned int followers) const {
+        for (; followers != 0; followers &= followers - 1) {
+            if (&block_in(maps_.view[__builtin_ctz(followers)], number) != &block) {
+                return false;
+            }
+        }
+        return true;
+    }
+
     /// Enters the patches around hubs that have left theirs, given as bits. Those outside the map are in none.
     /// @return the lanes outside
     [[gnu::noinline]] unsigned int move_patches(int place, const Position& at, unsigned int elsewhere) {
@@ -143,12 +168,23 @@ class MapEffect {
             const int lane = __builtin_ctz(elsewhere);
             const double u = lane::number_in(at.u, lane);
             const double w = lane::number_in(at.w, lane);
+            const unsigned int bit = 1U << static_cast<unsigned int>(lane);
+            Patches& patches = patches_[place];
+            bool are_together = false;
             if (view.contains(u, w)) {
-                enter(patch_at(view, u, w), patches_[place], lane);
+                const std::size_t number = block_number(view, u, w);
+                const MapBlock& block = block_in(view, number);
+                enter(patch_in(block, u, w), patches, lane);
+                are_together = all_followers_have(block, number, maps_.followers[place]);
             } else {
-                enter(nowhere, patches_[place], lane);
-                outside |= 1U << static_cast<unsigned int>(lane);
+                enter(nowhere, patches, lane);
+                outside |= bit;
             }
+            patches.apart = are_together ? patches.apart & ~bit : patches.apart | bit;
+        }
+        for (unsigned int followers = maps_.followers[place]; followers != 0; followers &= followers - 1) {
+            const int follower = __builtin_ctz(followers);
+            same_as_[follower] = patches_[place].apart == 0 ? place : follower;
         }
         return outside;
     }
@@ -170,6 +206,7 @@ class MapEffect {
 
     const RotorMaps& maps_;
     Patches patches_[max_rotors + 2];
+    int same_as_[max_rotors];  ///< of each rotor, where the earlier one was looked up last
 };
 
 }  // namespace downwash::simulation

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "downwash/aeromap/map_cache.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/model_option.hpp"
@@ -66,6 +67,21 @@ class Effects {
           threads_(given.threads),
           is_quiet_(given.is_quiet) {}
 
+    /// Fills the map around some points, as far as they lie on its planes, and keeps that in the cache.
+    void fill_around(const std::vector<std::array<double, 3>>& points_m) {
+        std::vector<LayerPlace> places;
+        for (const auto& point_m : points_m) {
+            if (const auto place = place_on_map(point_m)) {
+                places.push_back(*place);
+            }
+        }
+        if (!places.empty()) {
+            ProgressDisplay display(is_quiet_);
+            map().fill_around(places, threads_, [&display](double share) { display.show("filling the map", share); });
+            keep_map(cache_, map());
+        }
+    }
+
     PointEffect at(const std::array<double, 3>& point_m) {
         const DirectEffect& direct = model_->effect(rotor_);
         PointEffect effect{point_m, direct.is_flyable(point_m), {}, {}, {}};
@@ -84,6 +100,12 @@ class Effects {
 
  private:
     std::optional<SidedFactor<double>> map_factor(const Vector3& point_m) {
+        const auto place = place_on_map(point_m);
+        return place ? std::optional(map().sided_factor(place->layer, place->x_m, place->z_m)) : std::nullopt;
+    }
+
+    /// Where a point is on the map; empty if it lies on none of the planes of its layers.
+    [[nodiscard]] std::optional<LayerPlace> place_on_map(const Vector3& point_m) const {
         constexpr double on_plane_m = 1e-9;
         if (!problem_.aero.enabled) {
             return std::nullopt;
@@ -92,7 +114,7 @@ class Effects {
         for (int rotor = 0; rotor < model_->tick().plant.rotor_count; ++rotor) {
             const MapLayer& layer = model_->layer(rotor);
             if (layer.effect.get() == &model_->effect(rotor_) && std::abs(local_m[1] - layer.lateral_m) <= on_plane_m) {
-                return map().sided_factor(model_->rotor_layer(rotor), local_m[0], local_m[2]);
+                return LayerPlace{model_->rotor_layer(rotor), local_m[0], local_m[2]};
             }
         }
         return std::nullopt;
@@ -100,10 +122,7 @@ class Effects {
 
     const AeroMap& map() {
         if (!map_) {
-            ProgressDisplay display(is_quiet_);
-            map_ = model_->make_map(
-                problem_.bounds, threads_, [&display](double share) { display.show("building the map", share); },
-                cache_);
+            map_ = model_->make_map(problem_.bounds, cache_);
         }
         return *map_;
     }
@@ -232,8 +251,10 @@ std::vector<std::array<double, 3>> all_points(const QueryArguments& given) {
 void query_problem(const QueryArguments& given) {
     const Problem problem = read_problem(given.problem, {}, given.is_quiet ? nullptr : print_outdated);
     Effects effects(given, problem, cache_folder(given.no_cache));
+    const std::vector<std::array<double, 3>> points_m = all_points(given);
+    effects.fill_around(points_m);
     std::vector<PointEffect> points;
-    for (const auto& point_m : all_points(given)) {
+    for (const auto& point_m : points_m) {
         points.push_back(effects.at(point_m));
     }
     print_points(points, given.as_json);

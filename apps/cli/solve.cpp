@@ -59,7 +59,6 @@ void print_remedies(const Problem& problem, SolveOptions options, bool is_quiet)
     std::fflush(stdout);
     ProgressDisplay display(is_quiet);
     options.on_progress = [&](const Progress& progress) { display.show(progress); };
-    options.on_map_progress = [&](double share) { display.show("aero map", share); };
     static_cast<void>(try_remedies(problem, options, limit_s, [&](const Remedy& remedy) {
         display.clear();
         fmt::print("  {:<41} {}\n", remedy.change, outcome_of(remedy));
@@ -90,7 +89,6 @@ ExitCode run(const SolveArguments& given) {
     {
         ProgressDisplay display(given.is_quiet);
         display.say(announcement(read));
-        options.on_map_progress = [&](double share) { display.show("aero map", share); };
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = downwash::solve(plannable, options);
     }

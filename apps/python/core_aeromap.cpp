@@ -76,6 +76,18 @@ py::array_t<bool> is_flyable(const CoreProblem& of, const Points& points, int ro
                            [&](const double* at) { return effect.is_flyable(hub_of(model, index, at, is_in_world)); });
 }
 
+}  // namespace
+
+const MapArrays& CoreMap::arrays_of_layer(std::size_t layer) {
+    auto known = arrays.find(layer);
+    if (known == arrays.end()) {
+        known = arrays.emplace(layer, arrays_of(*map, layer, thread_count(0))).first;
+    }
+    return known->second;
+}
+
+namespace {
+
 CoreMap built(const CoreProblem& of, int threads, const std::string& cache, const py::object& on_progress,
               const py::object& stop) {
     auto map = interruptible(stop, [&](Attendance& attendance) {
@@ -83,8 +95,8 @@ CoreMap built(const CoreProblem& of, int threads, const std::string& cache, cons
         if (!on_progress.is_none()) {
             tell = [&](double share) { attendance.tell([&on_progress, share] { on_progress(share); }); };
         }
-        return of.model()->make_map(of.problem().bounds, thread_count(threads), tell, cache,
-                                    [token = attendance.token()] { return token.stop_requested(); });
+        return of.model()->make_whole_map(of.problem().bounds, thread_count(threads), tell, cache,
+                                          [token = attendance.token()] { return token.stop_requested(); });
     });
     return {std::move(map), of.model()};
 }
@@ -128,15 +140,9 @@ py::array_t<bool> map_flyable(const CoreMap& of, const Points& points, int rotor
                            [&](const double* at) { return of.map->is_flyable(layer, at[0], at[1]); });
 }
 
-/// The arrays of a layer, which keep the map alive and cannot be written.
-py::dict arrays_of(const std::shared_ptr<CoreMap>& of, int rotor) {
-    const MapView view = of->map->view(of->model->rotor_layer(rotor_index(*of->model, rotor)));
-    const std::size_t cells = std::size_t{view.columns} * view.rows;
-    std::size_t nodes = 0;
-    for (std::size_t i = 0; i < cells; ++i) {
-        const std::size_t kinds = view.sides[i] == CellSides::both ? 2 : 1;
-        nodes = std::max(nodes, view.cells[i].first_node + kinds * node_count(view.cells[i]));
-    }
+/// The arrays of a layer, which are made once, keep the map alive and cannot be written.
+py::dict arrays_dict(const std::shared_ptr<CoreMap>& of, int rotor) {
+    const MapArrays& of_layer = of->arrays_of_layer(of->model->rotor_layer(rotor_index(*of->model, rotor)));
     py::list names, formats, offsets;
     names.append("first_node"), names.append("steps_x"), names.append("steps_z");
     formats.append("u4"), formats.append("u2"), formats.append("u2");
@@ -149,12 +155,12 @@ py::dict arrays_of(const std::shared_ptr<CoreMap>& of, int rotor) {
         made.attr("setflags")(false);
         return made;
     };
-    const std::vector<py::ssize_t> shape{view.rows, view.columns};
+    const std::vector<py::ssize_t> shape{of_layer.rows, of_layer.columns};
     py::dict arrays;
-    arrays["cells"] = array(cell, shape, view.cells);
-    arrays["flyability"] = array(py::dtype("u1"), shape, view.flyability);
-    arrays["sides"] = array(py::dtype("u1"), shape, view.sides);
-    arrays["nodes"] = array(py::dtype("f4"), {static_cast<py::ssize_t>(nodes)}, view.nodes);
+    arrays["cells"] = array(cell, shape, of_layer.cells.data());
+    arrays["flyability"] = array(py::dtype("u1"), shape, of_layer.flyability.data());
+    arrays["sides"] = array(py::dtype("u1"), shape, of_layer.sides.data());
+    arrays["nodes"] = array(py::dtype("f4"), {static_cast<py::ssize_t>(of_layer.nodes.size())}, of_layer.nodes.data());
     return arrays;
 }
 
@@ -179,7 +185,7 @@ void bind_aeromap(py::module_& module) {
         .def("write", write)
         .def("factor", map_factor)
         .def("is_flyable", map_flyable)
-        .def("arrays", arrays_of)
+        .def("arrays", arrays_dict)
         .def("extent", extent_of)
         .def("cells_per_m", [](const CoreMap& of) { return of.map->view(0).cells_per_m; })
         .def("memory_bytes", [](const CoreMap& of) { return of.map->memory_bytes(); });

@@ -167,7 +167,7 @@ MapFigures measured(const std::string& name, const Problem& problem, int repetit
     figures.name = name;
     const auto model = make_flight_model(problem);
     std::shared_ptr<const AeroMap> map;
-    measure_build<AeroMap>(figures, repetitions, map, [&] { return model->make_map(problem.bounds); });
+    measure_build<AeroMap>(figures, repetitions, map, [&] { return model->make_whole_map(problem.bounds); });
     figures.load_s = cache_load_s(*map, repetitions);
     RandomHubs random = random_hubs(*map);
     measure_look_ups(
@@ -231,7 +231,7 @@ std::vector<MapFigures> print_random_scenes(const Options& options) {
         const auto model = make_flight_model(problem);
         std::shared_ptr<const AeroMap> map;
         measure_build<AeroMap>(all.emplace_back(), std::min(2, options.repetitions), map,
-                               [&] { return model->make_map(problem.bounds); });
+                               [&] { return model->make_whole_map(problem.bounds); });
     }
     std::sort(all.begin(), all.end(), [](const MapFigures& a, const MapFigures& b) { return a.build_s < b.build_s; });
     const auto largest = [&all](double MapFigures::*figure) {
@@ -273,7 +273,7 @@ void print_meshes(const Options& options) {
         const double scene_s = best_of(1, [&] { static_cast<void>(Scene(problem.obstacles)); });
         const auto model = make_flight_model(problem);
         std::shared_ptr<const AeroMap> map;
-        const double build_s = best_of(1, [&] { map = model->make_map(problem.bounds); });
+        const double build_s = best_of(1, [&] { map = model->make_whole_map(problem.bounds); });
         const std::vector<Vector3> anywhere = random_hubs(*map).scattered(512);
         const Vector3& center_m = problem.obstacles.front().center_world_m;
         std::vector<Vector3> above, below;

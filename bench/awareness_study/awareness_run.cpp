@@ -58,7 +58,7 @@ class Judge {
         : problem_(judged_problem(settings, task.problem, task.condition.robot)) {
         // Made for the first search of all levels: no search pays for it.
         if (problem_.aero.enabled) {
-            map_ = make_flight_model(problem_)->make_map(problem_.bounds, 1, {}, cache);
+            map_ = make_flight_model(problem_)->make_whole_map(problem_.bounds, 1, {}, cache);
         }
     }
 

@@ -61,7 +61,7 @@ Searches searches_of(Problem problem, const Given& given) {
     problem.planner.max_iterations = given.iterations;
     problem.planner.time_limit_s.reset();
     problem.uncertainty.reset();
-    const auto map = make_flight_model(problem)->make_map(problem.bounds);
+    const auto map = make_flight_model(problem)->make_whole_map(problem.bounds);
     for (std::uint32_t seed = 1; seed <= given.seeds; ++seed) {
         problem.planner.seed = seed;
         for (const CollisionCheckerKind kind : all_collision_checkers) {

@@ -62,7 +62,7 @@ void run(const Options& options) {
         stages[i].nodes = options.nodes * std::array<std::uint64_t, 4>{1, 3, 6, 10}[i] / 10;
     }
     SolveOptions solve_options;
-    solve_options.map = make_flight_model(problem)->make_map(problem.bounds);
+    solve_options.map = make_flight_model(problem)->make_whole_map(problem.bounds);
     const double before = bench::memory_bytes();
     std::stop_source enough;
     solve_options.stop = enough.get_token();

@@ -11,7 +11,7 @@ namespace downwash::bench {
 struct Bridge {
     Problem problem = read_problem(DOWNWASH_PROBLEMS "/bridge_inspection.yaml");
     std::shared_ptr<const FlightModel> model = make_flight_model(problem);
-    std::shared_ptr<const AeroMap> map = model->make_map(problem.bounds);
+    std::shared_ptr<const AeroMap> map = model->make_whole_map(problem.bounds);
 
     static const Bridge& get() {
         static const Bridge bridge;

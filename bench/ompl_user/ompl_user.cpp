@@ -169,7 +169,7 @@ void run(const Options& options) {
     problem.planner.variant = Variant::mp_arm_ada;
     problem.planner.max_iterations.reset();
     const auto model = make_flight_model(problem);
-    const auto map = model->make_map(problem.bounds);
+    const auto map = model->make_whole_map(problem.bounds);
     ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
     ompl::RNG::setSeed(1);  // once: OMPL takes no other
     run_as_believed(options, problem, *model, map);

@@ -193,7 +193,7 @@ std::string ratio(const std::optional<double>& a, const std::optional<double>& b
 
 Row measured(const Problem& problem, const Options& options, unsigned scene) {
     SolveOptions how;
-    how.map = problem.aero.enabled ? make_flight_model(problem)->make_map(problem.bounds, 1) : nullptr;
+    how.map = problem.aero.enabled ? make_flight_model(problem)->make_whole_map(problem.bounds) : nullptr;
     const Solution solution = solve(problem, how);
     Order chosen;
     for (const Visit& visit : solution.order->visits) {

@@ -48,7 +48,7 @@ void measure(const std::string& problem_file, const std::string& points_file, co
     for (const double each : k) {
         sum += each;
     }
-    const auto map = model.make_map(plannable.problem.bounds);
+    const auto map = model.make_whole_map(plannable.problem.bounds);
     const double map_s = best_of(1, [&] {
         for (std::size_t i = 0; i < k.size(); ++i) {
             k[i] = map->factor(model.rotor_layer(0), points[2 * i], points[2 * i + 1]);

@@ -90,7 +90,7 @@ using Times = std::map<int, Took>;
 Times measured(Problem problem, const std::vector<int>& counts, std::uint32_t seeds) {
     Times times;
     SolveOptions options;
-    options.map = make_flight_model(problem)->make_map(problem.bounds);
+    options.map = make_flight_model(problem)->make_whole_map(problem.bounds);
     for (std::uint32_t seed = 1; seed <= seeds; ++seed) {
         problem.planner.seed = seed;
         std::optional<Solution> on_one;

@@ -45,9 +45,11 @@ struct Candidates {
 
 /// How a search went.
 struct SearchRecord {
-    double wall_s = 0;                             ///< time of the search, direct flights of better plans included
-    double setup_wall_s = 0;                       ///< before it: checks of the problem, scene and aero map
-    double map_wall_s = 0;                         ///< part of setup_wall_s spent on the aero map
+    double wall_s = 0;        ///< time of the search, direct flights of better plans included
+    double setup_wall_s = 0;  ///< before it: checks of the problem, scene, and reading the map
+    /// Reading the aero map from the cache, and what the threads together spent on filling it, mostly during the
+    /// search.
+    double map_wall_s = 0;
     std::optional<double> first_solution_wall_s;   ///< first plan that the planner's own model accepted
     std::optional<double> first_certified_wall_s;  ///< first plan that got its certificate
     std::uint64_t iterations = 0;

@@ -54,7 +54,7 @@ TEST_CASE("A map of random scenes is within 0.01 of the direct effect wherever o
         const double radius = random.uniform(0.06, 0.25);
         const double grid_m = scene % 4 == 3 ? 0.3 : 0.05;
         const AeroMap map(test::layers(effect_in(random_obstacles(random, 6), radius, grid_m), {-0.2, 0.1}),
-                          PlaneOfMotion({0.1, 0.2, 0.3}, random.uniform(-3, 3)), {-2, 2, -1.5, 1.5}, 2);
+                          PlaneOfMotion({0.1, 0.2, 0.3}, random.uniform(-3, 3)), {-2, 2, -1.5, 1.5});
         const MapComparison found = compare(map, 20000, 100U + static_cast<unsigned>(scene));
         CAPTURE(scene, radius, grid_m, found.worst);
         CHECK(found.points == 20000);
@@ -65,6 +65,7 @@ TEST_CASE("A map of random scenes is within 0.01 of the direct effect wherever o
 TEST_CASE("A map that follows a change of its scene is that of the new scene to the last bit") {
     test::Random random(17);
     int untouched = 0;
+    double kept_share = 0;
     for (int scene = 0; scene < 24; ++scene) {
         const double radius = random.uniform(0.06, 0.25);
         const std::vector<Obstacle> all = random_obstacles(random, 7);
@@ -91,7 +92,12 @@ TEST_CASE("A map that follows a change of its scene is that of the new scene to 
         }
         CAPTURE(scene, radius);
         const AeroMap anew(layers, plane, extent);
-        CHECK(old.rebuilt(layers, changed, 2).to_bytes() == anew.to_bytes());
+        old.fill(2);
+        anew.fill(2);
+        const AeroMap following = old.rebuilt(layers, changed);
+        kept_share += following.filled_share();
+        following.fill(2);
+        CHECK(following.to_bytes() == anew.to_bytes());
         // Where it says that nothing is touched, nothing is another.
         constexpr double strip_m = 0.02;  // narrower than a block of cells
         for (double x_m = -2; x_m < 2 - strip_m; x_m += strip_m) {
@@ -112,6 +118,7 @@ TEST_CASE("A map that follows a change of its scene is that of the new scene to 
         CHECK(old.is_touched(changed, extent));
     }
     CHECK(untouched > 24);
+    CHECK(kept_share > 24 * 0.15);
 }
 
 TEST_CASE("Up to the edge of the flyable area no value of the other side is seen") {
@@ -120,11 +127,12 @@ TEST_CASE("Up to the edge of the flyable area no value of the other side is seen
     for (int scene = 0; scene < 6; ++scene) {
         const double radius = random.uniform(0.06, 0.25);
         const AeroMap map(test::layers(effect_in(random_obstacles(random, 6), radius), {0.1}),
-                          PlaneOfMotion({0.1, 0.2, 0.3}, random.uniform(-3, 3)), {-2, 2, -1.5, 1.5}, 2);
-        const MapView view = map.view(0);
+                          PlaneOfMotion({0.1, 0.2, 0.3}, random.uniform(-3, 3)), {-2, 2, -1.5, 1.5});
+        const MapView& view = map.view(0);
+        const MapArrays arrays = arrays_of(map, 0, 2);
         MapComparison found{map};
-        for (std::size_t cell = 0; cell < std::size_t{view.columns} * view.rows; ++cell) {
-            for (int i = 0; view.flyability[cell] == CellFlyability::mixed && i < 100; ++i) {
+        for (std::size_t cell = 0; cell < arrays.cells.size(); ++cell) {
+            for (int i = 0; arrays.flyability[cell] == CellFlyability::mixed && i < 100; ++i) {
                 const auto column = static_cast<double>(cell % view.columns);
                 const std::size_t row = cell / view.columns;
                 const double x = view.x_low_m + (column + random.uniform(0, 1)) / view.cells_per_m;
@@ -140,18 +148,19 @@ TEST_CASE("Up to the edge of the flyable area no value of the other side is seen
 }
 
 TEST_CASE("A map of a bridge, and one with another cap and distance, is within 0.01 of the direct effect") {
-    const AeroMap map(test::layers(effect_in(test::bridge(), 0.15), {-0.18, 0.18}), {}, {-12, 12, 0, 12}, 2);
+    const AeroMap map(test::layers(effect_in(test::bridge(), 0.15), {-0.18, 0.18}), {}, {-12, 12, 0, 12});
     const MapComparison found = compare(map, 40000, 21, 10000);
     CAPTURE(found.worst);
     CHECK(found.points == 40000);
     CHECK(found.worst <= 0.01);
+    map.fill(2);
     CHECK(map.memory_bytes() < 64U << 20U);
     AeroSettings settings;
     settings.max_factor = 3;
     settings.min_distance_radii = 0.2;
     const auto effect_to_three = test::effect_in(
         {{"", Box{{4, 4, 1}}, {0, 0, -0.5}, {}}, {"", Cylinder{0.2, 2, {0, 1, 0}}, {0, 0, 1}, {}}}, 0.12, settings);
-    const AeroMap map_to_three(test::layers(effect_to_three, {0}), {}, {-1, 1, 0, 2}, 1);
+    const AeroMap map_to_three(test::layers(effect_to_three, {0}), {}, {-1, 1, 0, 2});
     const MapComparison to_three = compare(map_to_three, 20000, 31);
     CHECK(to_three.worst <= 0.01);
 }
@@ -166,7 +175,7 @@ TEST_CASE("A map of a table with values below one and of wall distances is withi
                                          {"wall", Box{{0.5, 4, 3}}, {0.8, 0, 1.5}, {}},
                                          {"pipe", Cylinder{0.2, 2, {0, 1, 0}}, {-0.6, 0, 1}, {}}},
                                         0.15, settings);
-    const AeroMap map(test::layers(effect, {0, 0.2}), {}, {-1.5, 1.5, 0, 2}, 1);
+    const AeroMap map(test::layers(effect, {0, 0.2}), {}, {-1.5, 1.5, 0, 2});
     MapComparison found{map};
     double least = 1;
     test::Random random(51);
@@ -182,7 +191,9 @@ TEST_CASE("A map is the same to the bit for any number of threads") {
     test::Random random(12);
     const auto effect = effect_in(random_obstacles(random, 5), 0.15);
     const auto map = [&](int threads) {
-        return AeroMap(test::layers(effect, {-0.2, 0.2}), {}, {-2, 2, -1.5, 1.5}, threads);
+        AeroMap filled(test::layers(effect, {-0.2, 0.2}), {}, {-2, 2, -1.5, 1.5});
+        filled.fill(threads);
+        return filled;
     };
     const AeroMap one = map(1);
     for (const int threads : {2, 5}) {
@@ -202,8 +213,8 @@ TEST_CASE("Obstacles beside the plane of motion change no value of a map, howeve
             test::any_obstacle(random, {random.uniform(-9, 9), 5 + random.uniform(0, 9), random.uniform(-2, 2)}));
     }
     const Bounds extent{-2, 2, -1.5, 1.5};
-    const AeroMap alone(test::layers(effect_in(near, 0.2), {0}), {}, extent, 2);
-    const AeroMap among(test::layers(effect_in(all, 0.2), {0}), {}, extent, 2);
+    const AeroMap alone(test::layers(effect_in(near, 0.2), {0}), {}, extent);
+    const AeroMap among(test::layers(effect_in(all, 0.2), {0}), {}, extent);
     int felt = 0;
     for (int i = 0; i < 20000; ++i) {
         const double x = random.uniform(extent.x_low_m, extent.x_high_m);
@@ -216,20 +227,28 @@ TEST_CASE("Obstacles beside the plane of motion change no value of a map, howeve
     CHECK(felt > 1000);
 }
 
-TEST_CASE("Over level ground a map that is wider keeps no more values") {
+TEST_CASE("Over level ground a block keeps the values of a row once, and its arrays those of the whole row") {
     const auto effect = effect_in({{"floor", Box{{40, 40, 1}}, {0, 0, -0.5}, {}}}, 0.2);
-    const auto bytes = [&effect](double to_x_m) {
-        return AeroMap({{effect, 0}}, {}, {-1, to_x_m, 0.1, 2}).memory_bytes();
+    const auto values = [&effect](double to_x_m) {
+        const AeroMap map({{effect, 0}}, {}, {-1, to_x_m, 0.1, 2});
+        return arrays_of(map, 0).nodes.size();
     };
-    constexpr std::size_t bytes_per_cell = sizeof(MapCell) + sizeof(CellFlyability) + sizeof(CellSides);
-    constexpr std::size_t cells_added = 200 * 38;  // 10 m x 1.9 m of 0.05 m
-    CHECK(bytes(11) - bytes(1) == cells_added * bytes_per_cell);
+    CHECK(values(11) == values(1));
+    const AeroMap map({{effect, 0}}, {}, {-1, 1, 0.1, 2});
+    map.fill();
+    const MapView& view = map.view(0);
+    CHECK(block_around(view, 3, 3).nodes_size == block_around(view, 30, 3).nodes_size);
+    for (std::uint32_t cell = 0; cell < MapBlock::cell_count; ++cell) {
+        const MapBlock& block = block_around(view, 3, 3);
+        CHECK(block.cells[cell].first_node ==
+              block.cells[cell / MapBlock::side_cells * MapBlock::side_cells].first_node);
+    }
 }
 
 TEST_CASE("Outside its extent a map evaluates directly, and its borders belong to it") {
     const auto effect = effect_in(test::bridge(), 0.15);
     const PlaneOfMotion plane({0, 0, 0}, 0.2);
-    const AeroMap map(test::layers(effect, {0.18}), plane, {-1, 1, 1, 2}, 1);
+    const AeroMap map(test::layers(effect, {0.18}), plane, {-1, 1, 1, 2});
     for (const double x : {-7.0, -1.001, 1.06, 3.0}) {
         for (const double z : {0.1, 0.4, 2.06, 8.0}) {
             CHECK(map.factor(0, x, z) == effect->factor(plane.to_world(x, 0.18, z)));
@@ -238,7 +257,7 @@ TEST_CASE("Outside its extent a map evaluates directly, and its borders belong t
     }
     CHECK(map.factor(0, 0, 0.06) > 1.6);
     const auto coarse = effect_in(test::bridge(), 0.15, 0.07);
-    const AeroMap bordered(test::layers(coarse, {0}), {}, {-1, 1, 0.06, 1}, 1);
+    const AeroMap bordered(test::layers(coarse, {0}), {}, {-1, 1, 0.06, 1});
     for (const double x : {-1.0, std::nextafter(1.0, 0.0), 1.0}) {
         for (const double z : {0.06, 0.2, std::nextafter(1.0, 0.0), 1.0}) {
             CHECK(bordered.factor(0, x, z) == Approx(coarse->factor({x, 0, z})).margin(0.01));
@@ -248,7 +267,7 @@ TEST_CASE("Outside its extent a map evaluates directly, and its borders belong t
 
 TEST_CASE(
     "A position that is not finite has the factor 1 in a map and is not flyable, and without effects every one is") {
-    const AeroMap map(test::layers(effect_in(test::bridge(), 0.15), {0}), {}, {-1, 1, 0, 1}, 1);
+    const AeroMap map(test::layers(effect_in(test::bridge(), 0.15), {0}), {}, {-1, 1, 0, 1});
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const double infinity = std::numeric_limits<double>::infinity();
     for (const double bad : {nan, infinity, -infinity}) {
@@ -258,7 +277,7 @@ TEST_CASE(
     }
     AeroSettings settings;
     settings.enabled = false;
-    const AeroMap free_air(test::layers(test::effect_in(test::bridge(), 0.15, settings), {0}), {}, {-12, 12, 0, 12}, 1);
+    const AeroMap free_air(test::layers(test::effect_in(test::bridge(), 0.15, settings), {0}), {}, {-12, 12, 0, 12});
     CHECK(free_air.factor(0, 3, 5) == 1);
     CHECK(free_air.is_flyable(0, 3, 5));
 }
@@ -267,10 +286,10 @@ TEST_CASE("A map without extent, place or grid, or of too many cells, is an erro
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const auto effect = effect_in({}, 0.15);
     for (const Bounds& extent : {Bounds{1, 1, 0, 1}, {1, -1, 0, 1}, {0, 1, nan, 1}, {0, 1e6, 0, 1e6}}) {
-        CHECK_THROWS_AS(AeroMap(test::layers(effect, {0}), {}, extent, 1), InputError);
+        CHECK_THROWS_AS(AeroMap(test::layers(effect, {0}), {}, extent), InputError);
     }
-    CHECK_THROWS_AS(AeroMap(test::layers(effect, {nan}), {}, {0, 1, 0, 1}, 1), InputError);
+    CHECK_THROWS_AS(AeroMap(test::layers(effect, {nan}), {}, {0, 1, 0, 1}), InputError);
     for (const double grid_m : {0.0, -0.05, nan}) {
-        CHECK_THROWS_AS(AeroMap(test::layers(effect_in({}, 0.15, grid_m), {0}), {}, {0, 1, 0, 1}, 1), InputError);
+        CHECK_THROWS_AS(AeroMap(test::layers(effect_in({}, 0.15, grid_m), {0}), {}, {0, 1, 0, 1}), InputError);
     }
 }

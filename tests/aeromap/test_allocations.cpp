@@ -7,10 +7,11 @@
 using namespace downwash;
 using test::allocations;
 
-TEST_CASE("Neither the direct effect nor a look-up allocates") {
+TEST_CASE("Neither the direct effect nor a look-up in a filled block allocates") {
     test::Random random(41);
     const auto effect = test::effect_in(test::bridge(), 0.15);
-    const AeroMap map(test::layers(effect, {0}), {}, {-1, 1, 3, 5}, 1);
+    const AeroMap map(test::layers(effect, {0}), {}, {-1, 1, 3, 5});
+    map.fill();
     const long before = allocations;
     double sum = 0;
     for (int i = 0; i < 20000; ++i) {

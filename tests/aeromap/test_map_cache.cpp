@@ -66,7 +66,12 @@ struct Making {
         return test::layers(std::make_shared<const DirectEffect>(scene_of(obstacles), settings, radius_m, neighbours),
                             laterals_m);
     }
-    [[nodiscard]] AeroMap build() const { return {layers(), plane, extent}; }
+    /// A map with all blocks.
+    [[nodiscard]] AeroMap build() const {
+        AeroMap map(layers(), plane, extent);
+        map.fill(2);
+        return map;
+    }
     [[nodiscard]] std::string key() const { return map_key(layers(), plane, extent); }
     [[nodiscard]] bool is_map(const std::string& bytes) const {
         return AeroMap::from_bytes(layers(), plane, extent, bytes).has_value();
@@ -131,7 +136,10 @@ TEST_CASE("a map is built once and found from then on") {
     int reports = 0;
     const auto get = [&](const fs::path& place) {
         reports = 0;
-        return cached_map(place, making.layers(), making.plane, making.extent, 1, [&](double) { ++reports; });
+        auto map = cached_map(place, making.layers(), making.plane, making.extent);
+        map->fill(1, [&](double) { ++reports; });
+        keep_map(place, *map);
+        return map;
     };
     const auto first = get(folder / "maps");
     CHECK(reports > 0);
@@ -238,7 +246,11 @@ TEST_CASE("a damaged, cut, foreign or misnamed file of the cache is not trusted"
 
     // It is built and kept anew.
     write_file(file, good.substr(0, good.size() / 2));
-    CHECK(answers_alike(*cached_map(folder.path(), making.layers(), making.plane, making.extent), built));
+    const auto again = cached_map(folder.path(), making.layers(), making.plane, making.extent);
+    CHECK(again->filled_share() == 0);
+    again->fill();
+    CHECK(answers_alike(*again, built));
+    REQUIRE(cache.keep(*again));
     CHECK(making.find(cache) != nullptr);
 }
 
@@ -248,11 +260,12 @@ TEST_CASE("bytes that would lead a look-up astray, or that the effects no longer
     const std::string good = built.to_bytes();
     REQUIRE(making.is_map(good));
     CHECK_FALSE(making.is_map(good + '\0'));
-    // The first cell stands behind five counts: its first node, then its steps.
-    constexpr std::size_t cell = 5 * sizeof(std::uint64_t);
+    // The first cell stands behind seven counts: its first node, then its steps.
+    constexpr std::size_t cell = 7 * sizeof(std::uint64_t);
     REQUIRE(good.substr(cell, 4) == std::string(4, '\0'));
-    for (const std::size_t byte : {std::size_t{0}, std::size_t{8}, std::size_t{16}, std::size_t{24}, std::size_t{31},
-                                   std::size_t{32}, std::size_t{39}, cell + 3, cell + 4, cell + 5, cell + 6}) {
+    for (const std::size_t byte :
+         {std::size_t{0}, std::size_t{8}, std::size_t{16}, std::size_t{24}, std::size_t{31}, std::size_t{32},
+          std::size_t{39}, std::size_t{40}, std::size_t{48}, std::size_t{55}, cell + 3, cell + 4, cell + 5, cell + 6}) {
         std::string bad = good;
         bad[byte] = '\x7f';
         INFO("byte " << byte);
@@ -266,29 +279,97 @@ TEST_CASE("bytes that would lead a look-up astray, or that the effects no longer
     CHECK_FALSE(changed.is_map(good));
 }
 
-TEST_CASE("layers of equal values are kept once, and only such layers") {
-    const auto count = [](std::uint64_t number) {
-        return std::string(reinterpret_cast<const char*>(&number), sizeof number);
+TEST_CASE("blocks of equal values in two layers are kept once, and only such blocks") {
+    const auto equal_blocks = [](const AeroMap& map) {
+        std::size_t equal = 0;
+        const MapView& view = map.view(0);
+        for (std::uint32_t k = 0; k < view.rows; k += MapBlock::side_cells) {
+            for (std::uint32_t i = 0; i < view.columns; i += MapBlock::side_cells) {
+                equal += &block_around(view, i, k) == &block_around(map.view(1), i, k) ? 1 : 0;
+            }
+        }
+        return equal;
     };
     Making making = Making::small();
     making.obstacles = {{"floor", Box{{20, 20, 1}}, {0, 0, -0.5}, {}}};
-    const std::string both = making.build().to_bytes();
-    REQUIRE(making.is_map(both));
-    CHECK(making.build().are_equal(0, 1));
-    CHECK(AeroMap::from_bytes(making.layers(), making.plane, making.extent, both)->are_equal(0, 1));
-    const std::string before_last = both.substr(0, both.size() - sizeof(std::uint64_t));
-    CHECK(both == before_last + count(0));
-    for (const std::uint64_t first : {std::uint64_t{1}, std::uint64_t{2}, std::uint64_t{1} << 63U}) {
-        CHECK_FALSE(making.is_map(before_last + count(first)));
-    }
+    const AeroMap both = making.build();
+    const std::size_t blocks = equal_blocks(both);
+    const auto over = [](std::uint32_t cells) { return (cells + MapBlock::side_cells - 1) / MapBlock::side_cells; };
+    CHECK(blocks == std::size_t{over(both.view(0).columns)} * over(both.view(0).rows));
+    const std::string bytes = both.to_bytes();
+    const auto read = AeroMap::from_bytes(making.layers(), making.plane, making.extent, bytes);
+    REQUIRE(read);
+    CHECK(equal_blocks(*read) == blocks);
+    CHECK(read->to_bytes() == bytes);
+    CHECK(read->memory_bytes() == both.memory_bytes());
 
-    // A second layer, under half a ceiling, that is said to be the first one.
+    // A second layer, under half a ceiling.
     making.obstacles.push_back({"ceiling", Box{{20, 4, 1}}, {0, 2, 2}, {}});
-    making.laterals_m = {-0.2};
-    const std::string alone = making.build().to_bytes();
+    const AeroMap apart = making.build();
+    CHECK(equal_blocks(apart) < blocks);
+    CHECK(apart.to_bytes().size() > bytes.size());
+    CHECK(apart.memory_bytes() > both.memory_bytes());
+    making.laterals_m = {-0.2, -0.2};
+    const std::string said_to_be_one = making.build().to_bytes();
     making.laterals_m = {-0.2, 0.2};
-    REQUIRE_FALSE(making.build().are_equal(0, 1));
-    CHECK_FALSE(making.is_map(count(2) + alone.substr(sizeof(std::uint64_t)) + count(0)));
+    CHECK_FALSE(making.is_map(said_to_be_one));
+}
+
+TEST_CASE("a run adds what it filled to the cache, and files that grow many become one") {
+    const ScratchFolder folder;
+    const MapCache cache(folder.path());
+    const Making making;
+    const AeroMap whole = making.build();
+    double share = 0;
+    for (int run = 0; run < 12; ++run) {
+        const auto map = cached_map(folder.path(), making.layers(), making.plane, making.extent);
+        CHECK(map->filled_share() == share);
+        CHECK(cache.keep(*map));  // nothing is new: nothing is written
+        const std::size_t files = run == 0 ? 0 : files_in(folder.path());
+        const double x_m = making.extent.x_low_m + 0.15 + 0.3 * run;
+        CHECK(map->factor(0, x_m, 1.05) == whole.factor(0, x_m, 1.05));
+        CHECK(map->factor(1, x_m, 3.5) == whole.factor(1, x_m, 3.5));
+        CHECK(map->filled_share() >= share);
+        const bool is_more = map->filled_share() > share;
+        share = map->filled_share();
+        CHECK(cache.keep(*map));
+        CHECK(files_in(folder.path()) < 8);
+        CHECK((files_in(folder.path()) != files) == is_more);
+    }
+    const auto last = making.find(cache);
+    REQUIRE(last);
+    last->fill();
+    CHECK(answers_alike(*last, whole));
+}
+
+TEST_CASE("two programs that fill the same map at once keep the blocks of both") {
+    const ScratchFolder folder;
+    const MapCache cache(folder.path());
+    const Making making;
+    const AeroMap one(making.layers(), making.plane, making.extent);
+    const AeroMap other(making.layers(), making.plane, making.extent);
+    for (const AeroMap* map : {&one, &other}) {
+        static_cast<void>(map->factor(0, -1, 2));  // both
+    }
+    static_cast<void>(one.factor(0, -2.9, 0.5));
+    static_cast<void>(other.factor(1, 0.9, 3.9));
+    REQUIRE(cache.keep(one));
+    REQUIRE(cache.keep(other));
+    const auto found = making.find(cache);
+    REQUIRE(found);
+    CHECK(found->filled_share() == Approx(one.filled_share() * 3 / 2));
+    static_cast<void>(one.factor(1, 0.9, 3.9));
+    CHECK(found->to_bytes() == one.to_bytes());
+
+    // A damaged file costs its blocks only.
+    fs::path last;
+    for (const auto& entry : fs::directory_iterator(folder.path())) {
+        last = entry.path();
+    }
+    write_file(last, read_file(last, 100'000'000).substr(0, 1000));
+    const auto rest = making.find(cache);
+    REQUIRE(rest);
+    CHECK(rest->filled_share() == Approx(one.filled_share() * 2 / 3));
 }
 
 TEST_CASE("a cache holds 32 maps, the last used ones") {

@@ -26,7 +26,7 @@ bool is_in_patch(double s, double t) {
 
 TEST_CASE("A patch gives K and the flyability of the map to the last bit") {
     const AeroMap& map = map_at_a_girder();
-    const MapView view = map.view(0);
+    const MapView& view = map.view(0);
     test::Random random(1);
     int refined = 0;
     for (int n = 0; n < 20000; ++n) {
@@ -49,7 +49,7 @@ TEST_CASE("A patch gives K and the flyability of the map to the last bit") {
 }
 
 TEST_CASE("A place is in a patch exactly when it is the patch around the place, on the borders too") {
-    const MapView view = map_at_a_girder().view(0);
+    const MapView& view = map_at_a_girder().view(0);
     test::Random random(2);
     int inside = 0, outside = 0;
     for (int n = 0; n < 20000; ++n) {
@@ -80,7 +80,7 @@ TEST_CASE("A place is in a patch exactly when it is the patch around the place, 
 }
 
 TEST_CASE("No place is in no patch, and places outside the map have none") {
-    const MapView view = map_at_a_girder().view(0);
+    const MapView& view = map_at_a_girder().view(0);
     for (const double u : {0.0, 17.5, -HUGE_VAL, std::nan("")}) {
         CHECK_FALSE(is_in_patch((u - no_patch.u) * no_patch.steps_x, (u - no_patch.w) * no_patch.steps_z));
     }

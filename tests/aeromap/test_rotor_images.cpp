@@ -205,7 +205,7 @@ TEST_CASE("Maps of images and fountains are within 0.01 of the direct effect") {
         const auto fountain =
             std::make_shared<const DirectEffect>(DirectEffect::fountain(obstacles, settings, radius, neighbours));
         const AeroMap map({{rotor, body_m[0][1]}, {fountain, 0}}, PlaneOfMotion({0.1, 0.2, 0.3}, heading),
-                          {-2, 2, -1.5, 1.5}, 2);
+                          {-2, 2, -1.5, 1.5});
         test::MapComparison found{map};
         for (int i = 0; i < 80000; ++i) {
             const auto layer = static_cast<std::size_t>(i % 2);

@@ -7,6 +7,7 @@
 
 #include "../support/error_of.hpp"
 #include "../support/same_bytes.hpp"
+#include "../support/scratch_folder.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/direct_flight.hpp"
 #include "downwash/planner/goal_search.hpp"
@@ -100,40 +101,44 @@ TEST_CASE("the same seed and iteration budget give the same bytes, whatever the 
     }
 }
 
-TEST_CASE("a search tells how far its aero map is, and nothing of a map that it is given or needs not") {
+TEST_CASE("a search fills the part of the map that its flights ask for, and says how long that took") {
     Problem problem = with(Variant::mp_arm_ada);
     problem.planner.max_iterations = 1;
-    std::vector<double> shares;
+    const Solution solution = solve(problem);
+    REQUIRE(solution.map);
+    CHECK(solution.map->filled_share() > 0);
+    CHECK(solution.map->filled_share() < 0.7);
+    CHECK(solution.planning.map_wall_s >= solution.map->filling_s());
+    CHECK(solution.map->filling_s() > 0);
+
+    // The plans are those through a map that was full before, of which nothing is left to fill.
+    problem.planner.max_iterations = 200;
     SolveOptions options;
-    options.on_map_progress = [&](double share) { shares.push_back(share); };
-    const Solution solution = solve(problem, options);
-    REQUIRE(shares.size() > 1);
-    CHECK(std::is_sorted(shares.begin(), shares.end()));
-    CHECK(shares.front() > 0);
-    CHECK(shares.back() == 1);
-    shares.clear();
-    options.map = solution.map;
-    static_cast<void>(solve(problem, options));
-    options.map.reset();
-    static_cast<void>(solve(with(Variant::mp_arm_da, problem), options));
-    CHECK(shares.empty());
+    options.map = make_flight_model(problem)->make_whole_map(problem.bounds);
+    const double whole_s = options.map->filling_s();
+    const Solution full = solve(problem, options);
+    const Solution filling = solve(problem);
+    REQUIRE(full.plan);
+    REQUIRE(filling.plan);
+    CHECK(test::same_bytes(*full.plan, *filling.plan));
+    CHECK(options.map->filling_s() == whole_s);
+    CHECK(full.planning.map_wall_s < 0.1 * whole_s);
+    CHECK_FALSE(solve(with(Variant::mp_arm_da, problem), options).map);
 }
 
-TEST_CASE("a stop is noticed while the aero map is built") {
-    std::stop_source stop;
+TEST_CASE("a search keeps in the cache what it filled") {
+    const test::ScratchFolder folder;
+    Problem problem = with(Variant::mp_arm_ada);
+    problem.planner.max_iterations = 50;
     SolveOptions options;
-    options.stop = stop.get_token();
-    std::size_t reports = 0;
-    options.on_map_progress = [&](double) {
-        ++reports;
-        stop.request_stop();
-    };
-    const Solution solution = solve(with(Variant::mp_arm_ada), options);
-    CHECK(reports == 1);
-    CHECK(solution.interrupted);
-    CHECK(solution.status == Status::none);
-    CHECK(solution.map == nullptr);
-    CHECK_FALSE(solution.plan);
+    options.map_cache = folder / "maps";
+    const Solution first = solve(problem, options);
+    const auto kept = make_flight_model(problem)->make_map(problem.bounds, options.map_cache);
+    CHECK(kept->to_bytes() == first.map->to_bytes());
+    const Solution again = solve(problem, options);
+    CHECK(again.map->filling_s() == 0);
+    CHECK(again.map->to_bytes() == first.map->to_bytes());
+    CHECK(test::same_bytes(*first.plan, *again.plan));
 }
 
 TEST_CASE("every better plan is handed over as soon as it counts") {

@@ -62,7 +62,7 @@ TEST_CASE("The map of every shipped problem is within 0.01 of the direct effect 
     const auto problems = shipped_problems();
     REQUIRE(problems.size() >= 5);
     for (const Problem& problem : problems) {
-        const auto map = make_flight_model(problem)->make_map(problem.bounds, 2);
+        const auto map = make_flight_model(problem)->make_whole_map(problem.bounds, 2);
         const Bounds& extent = map->extent();
         test::MapComparison found{*map};
         test::Random random(17);
@@ -85,7 +85,7 @@ TEST_CASE("The map of every shipped problem is within 0.01 of the direct effect 
 TEST_CASE("The map of every shipped problem is within 0.01 near edges of shadows and at the least clearance") {
     int hard_problems = 0;
     for (const Problem& problem : shipped_problems()) {
-        const auto map = make_flight_model(problem)->make_map(problem.bounds, 2);
+        const auto map = make_flight_model(problem)->make_whole_map(problem.bounds, 2);
         test::MapComparison found{*map};
         test::Random random(18);
         int near_edges = 0;

@@ -54,7 +54,7 @@ def test_a_map_is_within_its_bound_of_direct_evaluation(bridge, points, built):
     assert 0 < difference.max() <= 0.01
 
 
-def test_the_arrays_of_a_map_are_its_own_memory(bridge, points):
+def test_the_arrays_of_a_map_are_made_once(bridge, points):
     built = downwash.AeroMap.build(bridge)
     arrays = built.arrays()
     assert all(not array.flags.owndata and not array.flags.writeable for array in arrays.values())
@@ -91,6 +91,19 @@ def test_a_map_comes_back_from_its_file(tmp_path, bridge, open_air, points, buil
         downwash.AeroMap.read(file, bridge)
     with pytest.raises(downwash.InputError, match="no such file"):
         downwash.AeroMap.read(tmp_path / "none", bridge)
+
+
+def test_the_map_of_a_search_is_filled_where_it_flew_and_answers_everywhere(tmp_path, bridge, points, built):
+    searched = downwash.solve(bridge, variant="mp-arm-ada", max_iterations=5).map
+    assert searched.memory_bytes < built.memory_bytes
+    searched.write(tmp_path / "part.map")
+    assert (tmp_path / "part.map").stat().st_size < built.memory_bytes
+    part = downwash.AeroMap.read(tmp_path / "part.map", bridge)
+    assert part.memory_bytes == searched.memory_bytes
+    for again in (searched, part):
+        assert np.array_equal(again.factor(points, threads=2), built.factor(points))
+        assert np.array_equal(again.arrays()["nodes"], built.arrays()["nodes"])
+    assert part.memory_bytes == built.memory_bytes
 
 
 def test_wrong_arguments_are_input_errors(bridge, built):

@@ -37,7 +37,8 @@ def is_flyable(
 class AeroMap:
     """K stored over every rotor position that a vehicle within the bounds of a problem can reach.
 
-    A layer is a grid of square cells, and each cell a regular grid of nodes, between which K is bilinear.
+    A layer is a grid of square cells, and each cell a regular grid of nodes, between which K is bilinear. A map that a
+    search made is filled where its flights asked for it, and fills further where `factor` or `is_flyable` ask.
     """
 
     def __init__(self, core: _core.AeroMap) -> None:
@@ -53,7 +54,7 @@ class AeroMap:
         on_progress: Callable[[float], object] | None = None,
         stop: object | None = None,
     ) -> AeroMap:
-        """Builds the map of a problem.
+        """Builds the whole map of a problem.
 
         threads: number of threads, on which the map does not depend; default: one per processor
         cache: folder in which maps are kept from one run to the next; default: none
@@ -69,7 +70,7 @@ class AeroMap:
         return cls(_core.AeroMap.read(os.fspath(file), problem._core))
 
     def write(self, file: Path) -> None:
-        """Writes the map. Machines of the same byte order can read it; `downwash aeromap build` writes for others."""
+        """Writes what is filled of the map: all of it, unless a search filled it. Machines of the same byte order can read it; `downwash aeromap build` writes for others."""
         self._core.write(os.fspath(file))
 
     def factor(self, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None) -> npt.NDArray[np.float64]:
@@ -84,7 +85,7 @@ class AeroMap:
         return self._core.is_flyable(np.asarray(points, dtype=np.float64), rotor, threads or 0)
 
     def arrays(self, rotor: int = 1) -> Dict[str, npt.NDArray[np.generic]]:
-        """The arrays of a rotor's layer, as they lie in memory: read-only views, which keep the map alive.
+        """The values of a rotor's layer: read-only arrays, made once, which keep the map alive. Fills the whole map.
 
         cells: (rows, columns) of first_node, steps_x, steps_z: the cell's nodes begin at `nodes[first_node]`, and there
             are (steps_x + 1) (steps_z + 1) of them, x running fastest
@@ -106,5 +107,5 @@ class AeroMap:
 
     @property
     def memory_bytes(self) -> int:
-        """The memory that the map takes."""
+        """The memory that the map takes now."""
         return self._core.memory_bytes()

@@ -211,7 +211,7 @@ class Planner:
         put: obstacles as a problem file has them; one with a name takes the place of the obstacle of that name
         removed: names of obstacles that are gone
         goal: as a problem file has it, in place of all goals that were not visited yet
-        time_limit_s: wall time of all, at most 10^6; an aero map that has to be made first is finished
+        time_limit_s: wall time of all, at most 10^6
         max_iterations: of the search
         on_answer: called with every Answer that is better than the one before, by the thread that called `replan`
         stop: a threading.Event, which ends the call early, once it is known how to stop

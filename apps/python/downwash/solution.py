@@ -188,7 +188,7 @@ def solve(
 
     threads: number of threads, on which the result does not depend; default: one per processor
     stop_at_first: end with the first plan that is accepted
-    cache: folder in which aero maps are kept; default: none
+    cache: folder in which the searches' parts of aero maps are kept; default: none
     map: aero map of the same world: `solution.map` or an AeroMap of the problem; default: a new one
     on_progress: called with a Progress ten times a second, by the thread that called `solve`
     stop: a threading.Event
