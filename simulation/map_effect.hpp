@@ -17,7 +17,7 @@ namespace downwash::simulation {
 
 /// The layers of a map that rotors and body of a vehicle fly through.
 struct RotorMaps {
-    const AeroMap* map;
+    const AeroMap* map;            ///< nullptr: there is none, and no surface has an effect
     MapView view[max_rotors + 2];  ///< map of every rotor; at body_place and wall_place those of the body and of walls
     std::size_t layer[max_rotors + 2];  ///< layer of the map, in the same order
     /// The earliest rotor, or the rotor itself, that shares its look-up: rotors one behind the other as seen along the
@@ -35,19 +35,69 @@ struct RotorMaps {
 [[nodiscard]] DOWNWASH_EXPORT SidedFactor<double> factor_outside(const RotorMaps& maps, int place, double x_m,
                                                                  double z_m);
 
+/// No map, through which all rotors share one look-up.
+[[nodiscard]] inline RotorMaps no_rotor_maps() noexcept {
+    return {nullptr, {}, {}, {}};
+}
+
+/// The patches of one layer that some flights are in; [..][flight]. Nothing but double.
+template <int flights>
+struct alignas(flights % 8 == 0 ? 64 : 8) MapPatches {
+    double u[flights], w[flights];  ///< members of MapPatch
+    double steps_x[flights], steps_z[flights];
+    double corner[4][flights], above[4][flights];
+    double doubt[flights];      ///< 0 where the cell is flyable throughout
+    double has_above[flights];  ///< 1 where the patch has a part from above
+};
+
+/// Makes a flight enter a patch.
+template <int flights>
+[[gnu::always_inline]] inline void enter(const MapPatch& patch, MapPatches<flights>& patches, int flight) {
+    patches.u[flight] = patch.u;
+    patches.w[flight] = patch.w;
+    patches.steps_x[flight] = patch.steps_x;
+    patches.steps_z[flight] = patch.steps_z;
+    for (int i = 0; i < 4; ++i) {
+        patches.corner[i][flight] = patch.corner[i];
+        patches.above[i][flight] = patch.above[i];
+    }
+    patches.doubt[flight] = patch.flyability == CellFlyability::flyable ? 0 : 1;
+    const bool has_above = patch.above[0] != 1 || patch.above[1] != 1 || patch.above[2] != 1 || patch.above[3] != 1;
+    patches.has_above[flight] = has_above ? 1 : 0;
+}
+
+/// The patches of every layer, in the order of RotorMaps, of the flights in the lanes of T.
+template <class T>
+struct OwnPatches {
+    static constexpr int flights = lane::width<T>;
+    static constexpr int first = 0;
+    MapPatches<flights> of_place[max_rotors + 2];
+};
+
+/// The same of as many of a greater number of flights, kept by someone else.
+template <int count>
+struct LentPatches {
+    static constexpr int flights = count;
+    int first;  ///< flight in the first lane of T
+    MapPatches<count>* of_place;
+};
+
 /// The EffectField looked up in a map along the flights of all lanes. It remembers the patch of the map in which every
 /// rotor is; the values are those of AeroMap::factor() to the last bit.
-template <class T>
+/// @tparam Patches OwnPatches or LentPatches
+template <class T, class Patches = OwnPatches<T>>
 class MapEffect {
  public:
     /// @pre `maps` outlives the object
     explicit MapEffect(const RotorMaps& maps) : maps_(maps) {
-        for (Patches& patches : patches_) {
+        for (auto& patches : patches_.of_place) {
             for (int lane = 0; lane < width; ++lane) {
                 enter(nowhere, patches, lane);
             }
         }
     }
+    /// @param patches in which the flights are, each perhaps in none   @pre `maps` outlives the object
+    MapEffect(const RotorMaps& maps, const Patches& patches) : maps_(maps), patches_(patches) {}
 
     SidedFactor<T> at_rotor(int rotor, const T& x_m, const T& z_m) { return at_place(rotor, x_m, z_m); }
     [[nodiscard]] int same_as(int rotor) const { return maps_.same_as[rotor]; }
@@ -57,48 +107,36 @@ class MapEffect {
 
     /// 0 in lanes whose hub is in a cell that is flyable throughout.
     [[nodiscard]] T doubt(int rotor, T x_m, T z_m) {
+        if (maps_.map == nullptr) {
+            return T(0);
+        }
         const Position at = position(rotor, x_m, z_m);
         if (const unsigned int elsewhere = elsewhere_bits(at); elsewhere != 0) {
             move_patches(rotor, at, elsewhere);
         }
-        return lane::load<T>(patches_[rotor].doubt);
+        return load(patches_.of_place[rotor].doubt);
     }
 
  private:
     static constexpr int width = lane::width<T>;
     static constexpr MapPatch nowhere = no_patch;  // a copy with the linkage of T
 
-    /// The patches of one layer that the lanes are in.
-    struct alignas(sizeof(T)) Patches {
-        double u[width], w[width];
-        double steps_x[width], steps_z[width];
-        double corner[4][width], above[4][width];
-        double doubt[width];          ///< 0 where the cell is flyable throughout
-        unsigned int have_above = 0;  ///< the lanes, as bits, whose patch has a part from above
-    };
-
     /// Where the lanes are in cells from the lower corner of a layer, and as shares of the patches.
     struct Position {
         T u, w, s, t;
     };
 
-    static void enter(const MapPatch& patch, Patches& patches, int lane) {
-        patches.u[lane] = patch.u;
-        patches.w[lane] = patch.w;
-        patches.steps_x[lane] = patch.steps_x;
-        patches.steps_z[lane] = patch.steps_z;
-        for (int i = 0; i < 4; ++i) {
-            patches.corner[i][lane] = patch.corner[i];
-            patches.above[i][lane] = patch.above[i];
-        }
-        patches.doubt[lane] = patch.flyability == CellFlyability::flyable ? 0 : 1;
-        const unsigned int bit = 1U << static_cast<unsigned int>(lane);
-        const bool has_above = patch.above[0] != 1 || patch.above[1] != 1 || patch.above[2] != 1 || patch.above[3] != 1;
-        patches.have_above = has_above ? patches.have_above | bit : patches.have_above & ~bit;
+    using PlacePatches = MapPatches<Patches::flights>;
+
+    [[nodiscard]] T load(const double (&numbers)[Patches::flights]) const {
+        return lane::load<T>(numbers + patches_.first);
     }
 
     SidedFactor<T> at_place(int place, const T& x_m, const T& z_m) {
-        const Patches& patches = patches_[place];
+        if (maps_.map == nullptr) {
+            return {T(1), T(1)};
+        }
+        const PlacePatches& patches = patches_.of_place[place];
         const Position at = position(place, x_m, z_m);
         if (const unsigned int elsewhere = elsewhere_bits(at); elsewhere != 0) {
             return look_up(place, x_m, z_m, at, elsewhere);
@@ -112,9 +150,8 @@ class MapEffect {
                           (z_m - T(view.z_low_m)) * T(view.cells_per_m));
     }
     [[nodiscard]] Position in_patches(int place, T u, T w) const {
-        const Patches& patches = patches_[place];
-        return {u, w, (u - lane::load<T>(patches.u)) * lane::load<T>(patches.steps_x),
-                (w - lane::load<T>(patches.w)) * lane::load<T>(patches.steps_z)};
+        const PlacePatches& patches = patches_.of_place[place];
+        return {u, w, (u - load(patches.u)) * load(patches.steps_x), (w - load(patches.w)) * load(patches.steps_z)};
     }
 
     /// The lanes whose hub is not in its patch, as bits. Exact: the share of a place in the patch is, and that of any
@@ -123,15 +160,15 @@ class MapEffect {
         return lane::bits_of(!((at.s >= T(0)) & (at.s < T(1)) & (at.t >= T(0)) & (at.t < T(1))));
     }
 
-    static T interpolated(const double (&corners)[4][width], const Position& at) {
-        const T corner[4] = {lane::load<T>(corners[0]), lane::load<T>(corners[1]), lane::load<T>(corners[2]),
-                             lane::load<T>(corners[3])};
+    T interpolated(const double (&corners)[4][Patches::flights], const Position& at) const {
+        const T corner[4] = {load(corners[0]), load(corners[1]), load(corners[2]), load(corners[3])};
         return bilinear(corner, at.s, at.t);
     }
 
     /// Where no lane has a part from above, it is 1 and need not be interpolated.
-    static SidedFactor<T> sides(const Patches& patches, const Position& at) {
-        return {interpolated(patches.corner, at), patches.have_above != 0 ? interpolated(patches.above, at) : T(1)};
+    SidedFactor<T> sides(const PlacePatches& patches, const Position& at) const {
+        const bool have_above = lane::bits_of(load(patches.has_above) > T(0)) != 0;
+        return {interpolated(patches.corner, at), have_above ? interpolated(patches.above, at) : T(1)};
     }
 
     /// Enters the patches around hubs that have left theirs, given as bits. Those outside the map are in none.
@@ -144,9 +181,9 @@ class MapEffect {
             const double u = lane::number_in(at.u, lane);
             const double w = lane::number_in(at.w, lane);
             if (view.contains(u, w)) {
-                enter(patch_at(view, u, w), patches_[place], lane);
+                enter(patch_at(view, u, w), patches_.of_place[place], patches_.first + lane);
             } else {
-                enter(nowhere, patches_[place], lane);
+                enter(nowhere, patches_.of_place[place], patches_.first + lane);
                 outside |= 1U << static_cast<unsigned int>(lane);
             }
         }
@@ -157,7 +194,7 @@ class MapEffect {
     [[gnu::noinline]] SidedFactor<T> look_up(int place, T x_m, T z_m, const Position& at, unsigned int elsewhere) {
         unsigned int outside = move_patches(place, at, elsewhere);
         const Position now = in_patches(place, at.u, at.w);
-        SidedFactor<T> result = sides(patches_[place], now);
+        SidedFactor<T> result = sides(patches_.of_place[place], now);
         for (; outside != 0; outside &= outside - 1) {
             const int lane = __builtin_ctz(outside);
             const SidedFactor<double> there =
@@ -169,7 +206,7 @@ class MapEffect {
     }
 
     const RotorMaps& maps_;
-    Patches patches_[max_rotors + 2];
+    Patches patches_;
 };
 
 }  // namespace downwash::simulation
