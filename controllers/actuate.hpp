@@ -33,8 +33,11 @@ T thrust_saturation(const PlantModel& plant, const T demand_n[max_rotors]) {
         max_n = lane::max(max_n, demand_n[i]);
     }
     const T below = T(plant.min_thrust_n) - min_n;
-    const T missed = T(1) + below / T(plant.max_thrust_n - plant.min_thrust_n);
-    return lane::max(max_n / T(plant.max_thrust_n), lane::select(below > T(0), missed, T(0)));
+    T missed(0);
+    if (lane::bits_of(below > T(0)) != 0) {  // a division that hardly any tick needs
+        missed = lane::select(below > T(0), T(1) + below / T(plant.max_thrust_n - plant.min_thrust_n), T(0));
+    }
+    return lane::max(max_n / T(plant.max_thrust_n), missed);
 }
 
 /// The free-air thrust [N] that a controller expects of rotor i in the middle of the tick: the command, or where a lag

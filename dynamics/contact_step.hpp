@@ -80,6 +80,7 @@ class TouchingSurroundings {
     double thrust_scale(int rotor) const { return around_.thrust_scale(rotor); }
     static constexpr bool has_wind = Around::has_wind;
     PlanePoint<double> wind() const { return around_.wind(); }
+    static constexpr bool has_wash = Around::has_wash;
     [[nodiscard]] const Slipstreams& slipstreams() const { return around_.slipstreams(); }
     double wash_scale() const { return around_.wash_scale(); }
     void add_load(const double q[4], const double u[4], const Attitude<double>& a, double force[4]) const {

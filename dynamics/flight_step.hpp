@@ -73,15 +73,15 @@ void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], 
     if constexpr (Around::has_wind) {
         if (model.has_drag) {
             add_drag(model, a, u, around.wind(), force);
-            // Asked with a thrust, so that it is no constant of the loop over the stages: compilers would make a second
-            // loop for flights in a wash, and both would not fit into the instruction cache.
-            if (lane::bits_of(T(around.slipstreams().count) > T(0) * wrench.thrust_n) != 0) [[unlikely]] {
-                // A copy: what the step computes with stays where the compiler wants it.
-                WashedVehicle<T> vehicle{a, {u[0], u[1], u[2], u[3]}, around.wind(), {}, around.wash_scale()};
-                for (int i = 0; i < model.rotor_count; ++i) {
-                    vehicle.acting_n[i] = around.thrust_scale(i) * thrust_n[i];
+            if constexpr (Around::has_wash) {
+                if (around.slipstreams().count > 0) {
+                    // A copy: what the step computes with stays where the compiler wants it.
+                    WashedVehicle<T> vehicle{a, {u[0], u[1], u[2], u[3]}, around.wind(), {}, around.wash_scale()};
+                    for (int i = 0; i < model.rotor_count; ++i) {
+                        vehicle.acting_n[i] = around.thrust_scale(i) * thrust_n[i];
+                    }
+                    add_arm_wash(model, around.slipstreams(), vehicle, force);
                 }
-                add_arm_wash(model, around.slipstreams(), vehicle, force);
             }
         }
     }
@@ -89,12 +89,35 @@ void accelerations(const BasicPlantModel<P>& model, const T q[4], const T u[4], 
     forward_dynamics(model, motion.equations, force, du);
 }
 
+/// Rotors that give the same thrust, as those on both sides of the plane do: what one of them does the others do.
+struct AlikeRotors {
+    int as[max_rotors];  ///< the earliest rotor that each is alike, perhaps that rotor itself
+};
+
+/// The rotors that are alike over a step: they give the same thrust at its beginning, in every lane, and have the same
+/// command.
+template <class T>
+AlikeRotors alike_rotors(int rotor_count, const T thrust_n[max_rotors], const T command_n[max_rotors]) {
+    const auto are_equal = [](const T& a, const T& b) { return lane::bits_of(!((a <= b) & (b <= a))) == 0; };
+    AlikeRotors alike;
+    for (int i = 0; i < rotor_count; ++i) {
+        alike.as[i] = i;
+        for (int j = 0; j < i; ++j) {
+            if (alike.as[j] == j && are_equal(command_n[i], command_n[j]) && are_equal(thrust_n[i], thrust_n[j])) {
+                alike.as[i] = j;
+                break;
+            }
+        }
+    }
+    return alike;
+}
+
 /// The state after `dt_s` with the command held: one classical Runge-Kutta step of fourth order. The surroundings are
 /// asked at every stage.
-/// @param motion that of the state   @param dt_s > 0
+/// @param motion that of the state   @param dt_s > 0   @param[out] next not the state itself
 template <class T, class P, Surroundings<T> Around>
-PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& state, const Motion<T>& motion,
-                          const PlantCommand<T>& command, T dt_s, const Around& around) {
+void flight_step(const BasicPlantModel<P>& model, const PlantState<T>& state, const Motion<T>& motion,
+                 const PlantCommand<T>& command, T dt_s, const Around& around, PlantState<T>& next) {
     // A loop over the stages, not four copies of their code: it has to stay in the processor's instruction cache.
     constexpr double share_of_step[] = {0, 0.5, 0.5, 1};
     constexpr double weight[] = {1, 2, 2, 1};
@@ -107,6 +130,10 @@ PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& 
         q[i] = state.q[i];
         u[i] = state.u[i];
         q_sum[i] = u_sum[i] = T(0);
+    }
+    AlikeRotors alike;
+    if (has_lag) {
+        alike = alike_rotors(rotors, state.thrust_n, command.thrust_n);
     }
     for (int i = 0; i < rotors; ++i) {
         thrust_n[i] = has_lag ? state.thrust_n[i] : command.thrust_n[i];
@@ -122,7 +149,8 @@ PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& 
             }
             if (has_lag) {
                 for (int i = 0; i < rotors; ++i) {
-                    thrust_n[i] = state.thrust_n[i] + step_s * thrust_rate[i];
+                    const int as = alike.as[i];
+                    thrust_n[i] = as != i ? thrust_n[as] : state.thrust_n[i] + step_s * thrust_rate[i];
                 }
             }
             here = motion_at(model, q, u);
@@ -135,15 +163,16 @@ PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& 
         }
         power_sum = power_sum + w * lane::abs(command.joint_torque_nm * u[3]);
         if (has_lag) {
-            power_sum = power_sum + w * rotor_power(model, thrust_n);
+            power_sum = power_sum + w * rotor_power(model, thrust_n, alike.as);
             for (int i = 0; i < rotors; ++i) {
-                thrust_rate[i] = (command.thrust_n[i] - thrust_n[i]) / T(model.rotor_time_constant_s);
-                thrust_sum[i] = thrust_sum[i] + w * thrust_rate[i];
+                if (alike.as[i] == i) {
+                    thrust_rate[i] = (command.thrust_n[i] - thrust_n[i]) / T(model.rotor_time_constant_s);
+                    thrust_sum[i] = thrust_sum[i] + w * thrust_rate[i];
+                }
             }
         }
     }
     const T sixth_s = dt_s * T(1.0 / 6.0);
-    PlantState<T> next;
     for (int i = 0; i < 4; ++i) {
         next.q[i] = state.q[i] + sixth_s * q_sum[i];
         next.u[i] = state.u[i] + sixth_s * u_sum[i];
@@ -154,9 +183,17 @@ PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& 
     }
     for (int i = 0; i < max_rotors; ++i) {
         next.thrust_n[i] = i >= rotors ? state.thrust_n[i]
-                           : has_lag   ? state.thrust_n[i] + sixth_s * thrust_sum[i]
+                           : has_lag   ? state.thrust_n[i] + sixth_s * thrust_sum[alike.as[i]]
                                        : command.thrust_n[i];
     }
+}
+
+/// The same, with the state after the step as a value.
+template <class T, class P, Surroundings<T> Around>
+PlantState<T> flight_step(const BasicPlantModel<P>& model, const PlantState<T>& state, const Motion<T>& motion,
+                          const PlantCommand<T>& command, T dt_s, const Around& around) {
+    PlantState<T> next;
+    flight_step(model, state, motion, command, dt_s, around, next);
     return next;
 }
 

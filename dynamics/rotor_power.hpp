@@ -17,4 +17,19 @@ T rotor_power(const Model& model, const T thrust_n[max_rotors]) {
     return T(model.power_coefficient_w_n1p5) * sum;
 }
 
+/// The same of rotors of which some give the same thrust as an earlier one.
+/// @param as the earliest rotor that each gives the thrust of, perhaps that rotor itself
+template <class T, class Model>
+T rotor_power(const Model& model, const T thrust_n[max_rotors], const int as[max_rotors]) {
+    T sum(0);
+    T each[max_rotors] = {};
+    for (int i = 0; i < model.rotor_count; ++i) {
+        if (as[i] == i) {
+            each[i] = lane::power_three_halves(lane::max(thrust_n[i], T(0)));
+        }
+        sum = sum + each[as[i]];
+    }
+    return T(model.power_coefficient_w_n1p5) * sum;
+}
+
 }  // namespace downwash::dynamics

@@ -27,9 +27,8 @@ concept ThrustRatios = requires(const S& around, int rotor, const PlanePoint<T>&
 ///   walls
 /// - `thrust_scale(rotor)`: the thrust that a rotor really gives in free air over the nominal one
 /// - `has_wind`: false where no drag acts; `wind()`: velocity of the air [m/s]
-/// - `slipstreams()`: those of the rotors that may meet the arm; `wash_scale()`: their speed over that of the model.
-/// Asked
-///   for where drag acts
+/// - `has_wash`: false where no slipstream meets the arm; `slipstreams()`: those of the rotors that may;
+///   `wash_scale()`: their speed over that of the model. Asked for where drag acts
 /// - `add_load(q, u, attitude, force)`: adds other generalised forces [N, N, N m, N m]
 template <class S, class T>
 concept Surroundings = ThrustRatios<S, T> &&
@@ -38,6 +37,7 @@ concept Surroundings = ThrustRatios<S, T> &&
     { around.thrust_scale(rotor) } -> std::same_as<T>;
     { S::has_wind } -> std::convertible_to<bool>;
     { around.wind() } -> std::same_as<PlanePoint<T>>;
+    { S::has_wash } -> std::convertible_to<bool>;
     { around.slipstreams() } -> std::same_as<const Slipstreams&>;
     { around.wash_scale() } -> std::same_as<T>;
     around.add_load(q, q, attitude, force);
@@ -53,6 +53,7 @@ struct CalmSurroundings {
     T thrust_scale(int /*rotor*/) const { return T(1); }
     static constexpr bool has_wind = false;
     PlanePoint<T> wind() const { return {T(0), T(0)}; }
+    static constexpr bool has_wash = false;
     [[nodiscard]] const Slipstreams& slipstreams() const { return no_slipstreams; }
     T wash_scale() const { return T(1); }
     void add_load(const T* /*q*/, const T* /*u*/, const Attitude<T>& /*attitude*/, T* /*force*/) const {}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <condition_variable>
@@ -26,36 +27,42 @@ using simulation::lane_count;
 
 constexpr int max_ticks_per_call = 1024;
 
-/// The kernel for many lanes, and the one for so few that half a wide register would do.
+/// The kernel for many lanes, and the one for so few that half the registers would do.
 struct Kernels {
     simulation::FlightKernel for_many, for_few;
 };
 
 constexpr int few_lanes = lane_count / 2;
 
-Kernels kernels_for(Instructions instructions, const FlownLaw& flown) {
-    const std::size_t law = flown.index();
-    const bool is_aided = controllers::aids_of(flown).are_any();
+Kernels kernels_for(Instructions instructions, std::size_t law) {
 #ifdef DOWNWASH_HAS_AVX2_KERNEL
     if (instructions == Instructions::avx2) {
-        return {simulation::avx2_kernel(law, is_aided), simulation::avx2_kernel(law, is_aided)};
+        return {simulation::avx2_kernel(law), simulation::avx2_kernel(law)};
     }
 #endif
 #ifdef DOWNWASH_HAS_AVX512_KERNEL
     if (instructions == Instructions::avx512) {
-        return {simulation::avx512_kernel(law, is_aided), simulation::avx2_kernel(law, is_aided)};
+        return {simulation::avx512_kernel(law), simulation::avx2_kernel(law)};
     }
 #endif
     assert(instructions == Instructions::baseline);
     static_cast<void>(instructions);
-    return {simulation::baseline_kernel(law, is_aided), simulation::baseline_kernel(law, is_aided)};
+    return {simulation::baseline_kernel(law), simulation::baseline_kernel(law)};
+}
+
+/// See LookAround. @param flights a std::vector of FlightLane
+void look_around(void* flights, unsigned int lanes) {
+    for (; lanes != 0; lanes &= lanes - 1) {
+        (*static_cast<std::vector<FlightLane>*>(flights))[static_cast<std::size_t>(std::countr_zero(lanes))]
+            .look_around();
+    }
 }
 
 FlightKernelModel make_kernel_model(const FlightSetting& setting) {
     const simulation::TickModel& tick = setting.model.tick();
     const PlantModel& plant = tick.plant;
     FlightKernelModel kernel{};
-    kernel.tick = &tick;
+    kernel.tick = tick;
     kernel.law = std::visit([](const auto& law) { return static_cast<const void*>(&law); }, tick.law);
     kernel.limits = simulation::rule_limits(setting.rules, setting.model.robot().arm);
     kernel.reach = simulation::motion_reach(setting.model);
@@ -64,11 +71,16 @@ FlightKernelModel make_kernel_model(const FlightSetting& setting) {
             std::sqrt(plant.rotor_x_m[i] * plant.rotor_x_m[i] + plant.rotor_z_m[i] * plant.rotor_z_m[i]);
         kernel.reach.body_m = std::max(kernel.reach.body_m, hub_m);
     }
-    kernel.has_map = setting.map != nullptr;
-    if (kernel.has_map) {
+    if (setting.map != nullptr) {
         kernel.maps = simulation::rotor_maps(setting.model, *setting.map);
+    } else {
+        kernel.maps = simulation::no_rotor_maps();
+        kernel.tick.tilt_loss = no_tilt_loss;
     }
+    kernel.delay_ticks = setting.model.nominal_world().numbers.delay_ticks;
+    kernel.keeps_past = !setting.model.flies_plainly();
     kernel.normal_levels = simulation::normal_levels();
+    kernel.look_around = look_around;
     return kernel;
 }
 
@@ -92,7 +104,8 @@ struct FlightPool::Impl {
         : rules(std::move(the_rules)),
           setting{model, map, rules, goal},
           kernel_model(make_kernel_model(setting)),
-          kernels(kernels_for(instructions, model.tick().law)) {}
+          has_wash(model.tick().slipstreams.count > 0 && model.tick().plant.has_drag),
+          kernels(kernels_for(instructions, model.tick().law.index())) {}
 
     /// Flies jobs until none is left. Several threads may call it at once.
     void work() {
@@ -102,14 +115,10 @@ struct FlightPool::Impl {
         for (int i = 0; i < lane_count; ++i) {
             flights.emplace_back(setting, lanes, i);
         }
+        std::fill(std::begin(lanes.flights), std::end(lanes.flights), &flights);
         for (;;) {
             for (FlightLane& lane : std::span(flights).first(lanes_used)) {
-                while (lane.is_free()) {
-                    const std::size_t job = next_job++;
-                    if (job >= jobs.size()) {
-                        break;
-                    }
-                    lane.begin(jobs[job]);
+                while (lane.is_free() && go_on(lane)) {
                 }
             }
             const int busy = move_together(flights);
@@ -117,7 +126,7 @@ struct FlightPool::Impl {
                 return;
             }
             for (FlightLane& lane : flights) {
-                if (lane.is_free()) {
+                if (!lane.can_fly()) {
                     lane.idle_like(flights.front());
                 }
             }
@@ -128,6 +137,29 @@ struct FlightPool::Impl {
                     lane.look(is_interrupted);
                 }
             }
+        }
+    }
+
+    /// Gives a free lane the next job: of its chain or, once that has ended, of those that nobody has begun.
+    /// @return false if there is none
+    bool go_on(FlightLane& lane) {
+        for (;;) {
+            if (FlightChain* const chain = lane.chain()) {
+                if (FlightJob* const job = chain->next()) {
+                    lane.begin(*job);
+                    return true;
+                }
+                lane.follow(nullptr);
+            }
+            const std::size_t next = next_job++;
+            if (next < jobs.size()) {
+                lane.begin(jobs[next]);
+                return true;
+            }
+            if (next >= chains.size()) {
+                return false;
+            }
+            lane.follow(chains[next]);
         }
     }
 
@@ -146,8 +178,8 @@ struct FlightPool::Impl {
         return busy;
     }
 
-    /// See FlightPool::fly().
-    void fly(std::span<FlightJob> all);
+    /// See FlightPool::fly(). Either jobs or chains.
+    void fly(std::span<FlightJob> all_jobs, std::span<FlightChain* const> all_chains);
 
     /// Waits for batches until the pool is closed.
     /// @param number of the thread, 1 for the first beside the calling one
@@ -184,11 +216,13 @@ struct FlightPool::Impl {
     FlightRules rules;
     FlightSetting setting;
     FlightKernelModel kernel_model;
+    bool has_wash;  ///< some slipstream may meet the arm
     Kernels kernels;
 
     std::span<FlightJob> jobs;
-    std::size_t lanes_used = lane_count;  ///< of every thread: few jobs are shared out evenly
-    std::atomic<std::size_t> next_job{0};
+    std::span<FlightChain* const> chains;
+    std::size_t lanes_used = lane_count;   ///< of every thread: few jobs are shared out evenly
+    std::atomic<std::size_t> next_job{0};  ///< or chain
 
     std::mutex mutex;
     std::condition_variable called, done;
@@ -227,21 +261,28 @@ const FlightRules& FlightPool::rules() const noexcept {
 }
 
 void FlightPool::fly(std::span<FlightJob> jobs) {
-    impl_->fly(jobs);
+    impl_->fly(jobs, {});
 }
 
-void FlightPool::Impl::fly(std::span<FlightJob> all) {
-    jobs = all;
+void FlightPool::fly(std::span<FlightChain* const> chains) {
+    impl_->fly({}, chains);
+}
+
+void FlightPool::Impl::fly(std::span<FlightJob> all_jobs, std::span<FlightChain* const> all_chains) {
+    jobs = all_jobs;
+    chains = all_chains;
     next_job = 0;
-    const auto world_of = [&](const FlightJob& job) { return flown_world(setting.model, job.world); };
-    kernel_model.is_in_worlds =
-        std::any_of(jobs.begin(), jobs.end(), [&](const FlightJob& job) { return world_of(job) != nullptr; });
-    kernel_model.has_noise = std::any_of(jobs.begin(), jobs.end(), [&](const FlightJob& job) {
-        return world_of(job) != nullptr && world_of(job)->has_noise;
-    });
+    const bool are_in_worlds =
+        std::any_of(jobs.begin(), jobs.end(), [&](const FlightJob& job) { return job.world != nullptr; });
+    kernel_model.kind = has_wash        ? simulation::TickKind::in_wash
+                        : are_in_worlds ? simulation::TickKind::in_world
+                                        : simulation::TickKind::nominal;
+    kernel_model.has_noise = std::any_of(
+        jobs.begin(), jobs.end(), [&](const FlightJob& job) { return job.world != nullptr && job.world->has_noise; });
     // One lane takes as long as two: two flights are not worth waking other threads.
-    const std::size_t asked = jobs.size() <= 2 ? 0 : allowed.load();
-    lanes_used = std::clamp<std::size_t>((jobs.size() + asked) / (asked + 1), 1, lane_count);
+    const std::size_t count = jobs.size() + chains.size();
+    const std::size_t asked = count <= 2 ? 0 : allowed.load();
+    lanes_used = std::clamp<std::size_t>((count + asked) / (asked + 1), 1, lane_count);
     if (asked == 0) {
         work();
         return;

@@ -23,6 +23,19 @@ enum class Instructions : std::uint8_t {
     return known_instructions().back();
 }
 
+/// Jobs that follow one another, of which each is known only when the one before has ended.
+class DOWNWASH_EXPORT FlightChain {
+ public:
+    FlightChain() = default;
+    virtual ~FlightChain() = default;
+    FlightChain(const FlightChain&) = delete;
+    FlightChain& operator=(const FlightChain&) = delete;
+
+    /// The job to fly now, in the nominal world; nullptr: the chain has ended. Asked at first, and whenever a job has
+    /// ended. All threads of a pool may ask, one at a time for one chain and several at once for several chains.
+    [[nodiscard]] virtual FlightJob* next() = 0;
+};
+
 /// A thread pool that flies jobs side by side, in the lanes of wide registers. Every job ends exactly as if fly() flew
 /// its legs one after the other, whatever the instructions and the number of threads. A lane whose flight ends takes
 /// the next job.
@@ -40,6 +53,9 @@ class DOWNWASH_EXPORT FlightPool {
 
     /// Flies the jobs. No two threads may call this at once.
     void fly(std::span<FlightJob> jobs);
+    /// Flies the chains to their ends. A lane goes on with the next job of its chain at once, so that no lane waits for
+    /// jobs that others still fly.
+    void fly(std::span<FlightChain* const> chains);
 
     /// Sets how many of its threads the next batches use: at least 1, the calling one included. You may call this from
     /// any thread, also during a batch.

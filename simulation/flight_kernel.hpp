@@ -42,36 +42,55 @@ struct alignas(64) FlightLanes {
     double max_speed_m_s[lane_count];  ///< speed in (x, z) from which on to check; infinite: never
 
     LaneRows<FlightSums> sums;
-    double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack
+    double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack, which stays as it is
+
+    MapPatches<lane_count> patches[max_rotors + 2];  ///< patches of the map in which the rotors are
 
     // What a call found at its last tick.
     LaneRows<PlanarPose> before;   ///< pose at the tick before
     double rejection[lane_count];  ///< number of a Rejection
     /// 1 if a check is due because of the flyable area, free_motion_m, look_tick or max_speed_m_s.
     double is_unclear[lane_count];
+
+    void* flights[lane_count];  ///< for LookAround; the same in every lane
+};
+
+/// Looks around lanes, given as bits, for which a check is due: sets how far each may fly until the next one, or the
+/// rejection that it has found. Reads `state` (x, z, pitch and arm), `before` and `tick`; clears is_unclear, unless
+/// there is more to check than obstacles and flyable area. Then, and after a rejection, the kernel returns.
+using LookAround = void (*)(void* flights, unsigned int lanes);
+
+/// Which tick the flights of a call need. Each kind is compiled for itself.
+enum class TickKind : std::uint8_t {
+    nominal,   ///< nominal_tick(): all fly in the nominal world, and no arm is in a slipstream
+    in_world,  ///< tick_in_world(), and no arm is in a slipstream
+    in_wash,   ///< tick_in_world()
 };
 
 /// What a lane's flight does not change.
 struct FlightKernelModel {
-    const TickModel* tick;
+    TickModel tick;   ///< without a map no rotor loses any of its effect as it tilts: there is none
     const void* law;  ///< law of the tick, of the type that the kernel was compiled for
     RuleLimits limits;
-    MotionReach reach;  ///< how far a motion moves any point of the robot, hubs included
-    bool has_map;
-    RotorMaps maps;
-    bool is_in_worlds;  ///< whether some flight needs tick_in_world()
-    bool has_noise;     ///< whether some world has noise
+    MotionReach reach;   ///< how far a motion moves any point of the robot, hubs included
+    RotorMaps maps;      ///< see no_rotor_maps()
+    double delay_ticks;  ///< age of what the controller sees in the nominal world
+    bool keeps_past;     ///< whether flights in the nominal world remember where they were
+    TickKind kind;
+    bool has_noise;  ///< whether some world has noise
     const float* normal_levels;
+    LookAround look_around;
 };
 
-/// Flies all lanes tick by tick until an active one breaks a rule, is unclear, or is at the end of its segment, or
-/// until so many ticks have passed. Every lane's numbers are those of simulation::tick() to the last bit.
+/// Flies all lanes tick by tick until an active one breaks a rule, stays unclear, or is at the end of its segment, or
+/// until so many ticks have passed or lanes have looked around some times. Every lane's numbers are those of
+/// simulation::FlightLoop to the last bit.
 using FlightKernel = void (*)(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks);
 
-// For each set of instructions the kernel of a control law, by its number in FlownLaw, and whether it flies Aided.
-// Those that are left out of a build are not defined.
-[[nodiscard]] FlightKernel baseline_kernel(std::size_t law, bool is_aided);
-[[nodiscard]] FlightKernel avx2_kernel(std::size_t law, bool is_aided);
-[[nodiscard]] FlightKernel avx512_kernel(std::size_t law, bool is_aided);
+// For each set of instructions the kernel of a control law, by its number in FlownLaw. Those that are left out of a
+// build are not defined.
+[[nodiscard]] FlightKernel baseline_kernel(std::size_t law);
+[[nodiscard]] FlightKernel avx2_kernel(std::size_t law);
+[[nodiscard]] FlightKernel avx512_kernel(std::size_t law);
 
 }  // namespace downwash::simulation

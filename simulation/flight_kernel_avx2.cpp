@@ -4,8 +4,8 @@
 
 namespace downwash::simulation {
 
-FlightKernel avx2_kernel(std::size_t law, bool is_aided) {
-    return kernel_of(law, is_aided);
+FlightKernel avx2_kernel(std::size_t law) {
+    return kernel_of(law);
 }
 
 }  // namespace downwash::simulation

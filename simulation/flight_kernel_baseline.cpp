@@ -2,8 +2,8 @@
 
 namespace downwash::simulation {
 
-FlightKernel baseline_kernel(std::size_t law, bool is_aided) {
-    return kernel_of(law, is_aided);
+FlightKernel baseline_kernel(std::size_t law) {
+    return kernel_of(law);
 }
 
 }  // namespace downwash::simulation

@@ -18,18 +18,13 @@ using lane::PackMask;
 
 static_assert(lane_count % lane::pack_width == 0);
 
-/// An EffectField that knows where the vehicle may fly: `doubt(rotor, x_m, z_m)` is 0 in lanes whose hub is in a cell
-/// that is flyable throughout.
-template <class Field>
-concept KnowsFlyableArea = requires(Field& field, const Pack& at_m) {
-    field.doubt(0, at_m, at_m);
-};
+/// The map along the flights of a group of lanes.
+using LaneMaps = MapEffect<Pack, LentPatches<lane_count>>;
 
 /// 0 where every hub is in a cell that is flyable throughout.
 /// @param scene_x_m,scene_z_m where the surfaces are, from where the map has them
-template <KnowsFlyableArea Field>
-Pack flyable_doubt(const PlantModel& plant, const VehicleState<Pack>& state, const dynamics::Attitude<Pack>& a,
-                   Pack scene_x_m, Pack scene_z_m, Field& field) {
+inline Pack flyable_doubt(const PlantModel& plant, const VehicleState<Pack>& state, const dynamics::Attitude<Pack>& a,
+                          Pack scene_x_m, Pack scene_z_m, LaneMaps& field) {
     Pack doubt(0);
     for (int rotor = 0; rotor < plant.rotor_count; ++rotor) {
         if (field.same_as(rotor) == rotor) {
@@ -45,19 +40,23 @@ Pack flyable_doubt(const PlantModel& plant, const VehicleState<Pack>& state, con
 struct LaneGroup {
     FlightLanes& lanes;
     int first;
+    PackMask is_active;
+
+    LaneGroup(FlightLanes& all, int first_lane) : lanes(all), first(first_lane) {
+        is_active = load(lanes.is_active) > Pack(0);
+    }
 
     Pack load(const double (&from)[lane_count]) const { return lane::load<Pack>(from + first); }
-    void store(Pack pack, double (&to)[lane_count]) const { pack.store(to + first); }
+    /// Lanes that only fill the pack stay as they are, so that they never fly far from where they were put.
+    void store(Pack pack, double (&to)[lane_count]) const { select(is_active, pack, load(to)).store(to + first); }
 
     /// A struct of packs.
     template <class Struct, std::size_t Count>
-    Struct load(const double (&from)[Count][lane_count]) const {
+    void load(const double (&from)[Count][lane_count], Struct& to) const {
         static_assert(number_count<Pack, Struct> == Count);
-        Struct packs;
         for (int i = 0; i < static_cast<int>(Count); ++i) {
-            set_number_at(packs, i, load(from[i]));
+            set_number_at(to, i, load(from[i]));
         }
-        return packs;
     }
     template <class Struct, std::size_t Count>
     void store(const Struct& from, double (&to)[Count][lane_count]) const {
@@ -89,7 +88,12 @@ inline BasicReferencePoint<Pack> reference_at(const LaneGroup& group, Pack tick,
                                               {x.velocity, z.velocity, arm.velocity},
                                               {x.acceleration, z.acceleration, arm.acceleration}};
     const PackMask is_end = tick >= group.load(lanes.ticks);
-    return any(is_end) ? select_each(is_end, group.load<BasicReferencePoint<Pack>>(lanes.end), reference) : reference;
+    if (!any(is_end)) {
+        return reference;
+    }
+    BasicReferencePoint<Pack> end;
+    group.load(lanes.end, end);
+    return select_each(is_end, end, reference);
 }
 
 /// The standard normal numbers that the lanes' worlds draw for a tick.
@@ -104,122 +108,273 @@ inline void draw_noises(const FlightKernelModel& model, const LaneGroup& group, 
     }
 }
 
-/// A law as what flies. @param law the law itself
-template <class Law>
-[[gnu::always_inline]] inline const Law& flown(const void* law) {
-    return *static_cast<const Law*>(law);
-}
-template <class Flown>
-requires controllers::is_aided<Flown>
-[[gnu::always_inline]] inline Flown flown(const void* law) {
-    return {*static_cast<std::remove_reference_t<decltype(Flown::law)>*>(law)};
-}
+/// Where the lanes' vehicles were at the last ticks, as a ring: nothing moves when a tick has passed.
+class PastMotions {
+ public:
+    void read(const WorldMemory<Pack>& memory) {
+        now_ = 0;
+        for (int age = 1; age <= max_delay_ticks; ++age) {
+            past_[-age & mask] = memory.past[age - 1];
+        }
+    }
+    /// @param age in ticks, from 1 to max_delay_ticks
+    [[nodiscard]] const PastMotion<Pack>& at(int age) const { return past_[(now_ - age) & mask]; }
+    /// A tick has passed. @param then the state at its beginning
+    void pass(const dynamics::PlantState<Pack>& then) {
+        PastMotion<Pack>& past = past_[now_];
+        for (int i = 0; i < 4; ++i) {
+            past.q[i] = then.q[i];
+            past.u[i] = then.u[i];
+        }
+        now_ = (now_ + 1) & mask;
+    }
+    void write(WorldMemory<Pack>& memory) const {
+        for (int age = 1; age <= max_delay_ticks; ++age) {
+            memory.past[age - 1] = at(age);
+        }
+    }
 
-/// One tick of all lanes: tick_in_world() or tick().
-/// @tparam Law as what flies   @tparam is_in_worlds whether some flights are
-/// @param noise,world unused outside worlds   @param motion that of the state, unused in worlds
-template <bool is_in_worlds, class Law, class State, class Field>
-#if !defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-// With narrow registers a tick with all that it calls in one place takes a fifth less; with wide ones fly_lanes() is in
-// one place instead. What sanitizers add would keep the compiler busy for minutes.
-[[gnu::flatten]]
-#endif
-State
-tick_of_lanes(const TickModel& model, const Law& law, const WorldNumbers<Pack>& world, const Pack noise[noise_count],
-              const State& state, const dynamics::Motion<Pack>& motion, const BasicReferencePoint<Pack>& reference,
-              Field& field, controllers::Actuation<Pack>& given) {
-    if constexpr (is_in_worlds) {
-        return tick_in_world(model, law, world, noise, state, reference, field, given);
+ private:
+    static constexpr int mask = 3;
+    static_assert(max_delay_ticks <= mask);
+    PastMotion<Pack> past_[mask + 1];
+    int now_ = 0;
+};
+
+/// A law as what flies: with its aids, if it can have any. @param law the law itself
+template <class Flown>
+[[gnu::always_inline]] inline Flown flown(const void* law) {
+    if constexpr (controllers::is_aided<Flown>) {
+        return {*static_cast<std::remove_reference_t<decltype(Flown::law)>*>(law)};
     } else {
-        return tick(model, law, state, motion, reference, field, given);
+        return *static_cast<const Flown*>(law);
     }
 }
+
+/// The nominal world, tick by tick.
+template <class Law>
+class NominalWorld {
+ public:
+    NominalWorld(const FlightKernelModel& model, const LaneGroup& group, const VehicleState<Pack>& state)
+        : model_(model), late_(lateness(Pack(model.delay_ticks))), motion_(&motions_[0]) {
+        WorldMemory<Pack> memory;
+        group.load(group.lanes.world_memory, memory);
+        past_.read(memory);
+        *motion_ = dynamics::motion_at(model.tick.plant, state.plant.q, state.plant.u);
+        if (is_one_tick_late()) {
+            const PastMotion<Pack>& then = past_.at(1);
+            motions_[1] = dynamics::motion_at(model.tick.plant, then.q, then.u);
+        }
+    }
+
+    [[gnu::always_inline]] void tick(const Law& law, Pack /*tick*/, const VehicleState<Pack>& state,
+                                     const BasicReferencePoint<Pack>& reference, LaneMaps& field,
+                                     controllers::Actuation<Pack>& given, VehicleState<Pack>& next) {
+        dynamics::PlantState<Pack> looked_back;
+        const dynamics::PlantState<Pack>* seen = &state.plant;
+        const dynamics::Motion<Pack>* seen_motion = motion_;
+        dynamics::Motion<Pack>* const other = motion_ == &motions_[0] ? &motions_[1] : &motions_[0];
+        if (model_.delay_ticks > 0) {
+            look_back(
+                late_, state.plant, [this](int age) -> const PastMotion<Pack>& { return past_.at(age); }, looked_back);
+            seen = &looked_back;
+            seen_motion = other;
+            if (!is_one_tick_late()) {
+                *other = dynamics::motion_at(model_.tick.plant, looked_back.q, looked_back.u);
+            }
+        }
+        nominal_tick(model_.tick, law, *seen, *seen_motion, state, *motion_, reference, field, given, next);
+        if (model_.keeps_past) {
+            past_.pass(state.plant);
+        }
+        motion_ = other;
+        *motion_ = dynamics::motion_at(model_.tick.plant, next.plant.q, next.plant.u);
+    }
+
+    [[nodiscard]] const dynamics::Attitude<Pack>& attitude() const { return motion_->attitude; }
+    [[nodiscard]] Pack scene_x_m() const { return Pack(0); }
+    [[nodiscard]] Pack scene_z_m() const { return Pack(0); }
+
+    void store(const LaneGroup& group) const {
+        if (model_.keeps_past) {
+            WorldMemory<Pack> memory;
+            group.load(group.lanes.world_memory, memory);
+            past_.write(memory);
+            group.store(memory, group.lanes.world_memory);
+        }
+    }
+
+ private:
+    /// Then the motion of what the controller sees is that of the tick before.
+    [[nodiscard]] bool is_one_tick_late() const { return model_.delay_ticks == 1; }
+
+    const FlightKernelModel& model_;
+    PastMotions past_;
+    Lateness<Pack> late_;
+    dynamics::Motion<Pack> motions_[2];
+    dynamics::Motion<Pack>* motion_;  ///< that of the state
+};
+
+/// A world for every lane, tick by tick.
+template <class Law, bool may_have_wash>
+class OtherWorlds {
+ public:
+    OtherWorlds(const FlightKernelModel& model, const LaneGroup& group, const VehicleState<Pack>& state)
+        : model_(model), group_(group), first_tick_(group.load(group.lanes.first_tick)) {
+        group.load(group.lanes.world, world_);
+        plant_ = plant_in(model.tick, world_);
+        late_ = lateness(world_.delay_ticks);
+        attitude_ = dynamics::attitude(plant_, state.plant.q[2], state.plant.q[3]);
+        WorldMemory<Pack> memory;
+        group.load(group.lanes.world_memory, memory);
+        past_.read(memory);
+        for (int i = 0; i < 3; ++i) {
+            gust_[i] = memory.gust[i];
+        }
+        for (Pack& noise : noise_) {
+            noise = Pack(0);
+        }
+    }
+
+    [[gnu::always_inline]] void tick(const Law& law, Pack tick, const VehicleState<Pack>& state,
+                                     const BasicReferencePoint<Pack>& reference, LaneMaps& field,
+                                     controllers::Actuation<Pack>& given, VehicleState<Pack>& next) {
+        if (model_.has_noise) {
+            draw_noises(model_, group_, first_tick_ + tick, noise_);
+        }
+        dynamics::PlantState<Pack> seen;
+        look_back(
+            late_, state.plant, [this](int age) -> const PastMotion<Pack>& { return past_.at(age); }, seen);
+        add_errors(world_, noise_, seen);
+        move_in_world<may_have_wash>(model_.tick, law, world_, plant_, seen, wind_in(world_, gust_), state, attitude_,
+                                     reference, field, given, next);
+        past_.pass(state.plant);
+        pass_gusts(world_, noise_, gust_);
+    }
+
+    [[nodiscard]] const dynamics::Attitude<Pack>& attitude() const { return attitude_; }
+    [[nodiscard]] Pack scene_x_m() const { return world_.scene_x_m; }
+    [[nodiscard]] Pack scene_z_m() const { return world_.scene_z_m; }
+
+    void store(const LaneGroup& group) const {
+        WorldMemory<Pack> memory;
+        past_.write(memory);
+        for (int i = 0; i < 3; ++i) {
+            memory.gust[i] = gust_[i];
+        }
+        group.store(memory, group.lanes.world_memory);
+    }
+
+ private:
+    const FlightKernelModel& model_;
+    const LaneGroup& group_;
+    WorldNumbers<Pack> world_;
+    BasicPlantModel<Pack> plant_;
+    PastMotions past_;
+    Lateness<Pack> late_;
+    Pack gust_[3];
+    Pack noise_[noise_count];
+    dynamics::Attitude<Pack> attitude_;  ///< of the plant
+    Pack first_tick_;
+};
+
+template <class Law, TickKind kind>
+struct WorldsOf {
+    using Type = OtherWorlds<Law, kind == TickKind::in_wash>;
+};
+template <class Law>
+struct WorldsOf<Law, TickKind::nominal> {
+    using Type = NominalWorld<Law>;
+};
+
+/// After so many times that lanes looked around the kernel returns, so that a flight among many obstacles can be ended.
+inline constexpr int max_looks = 16;
 
 /// Flies a group of lanes until one of them wants attention: see FlightKernel.
-/// @tparam Law as what flies   @tparam is_in_worlds whether some flights are
-template <class Law, bool is_in_worlds, class Field>
-void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks, Field field) {
+/// @tparam Flown the law as what flies
+template <class Flown, TickKind kind>
+void fly_group(const FlightKernelModel& model, const LaneGroup& group, int max_ticks) {
     FlightLanes& lanes = group.lanes;
-    const PackMask is_active = group.load(lanes.is_active) > Pack(0);
-    if (!any(is_active)) {
+    if (!any(group.is_active)) {
         return;
     }
-    const auto& law = flown<Law>(model.law);
-    const PlantModel& plant = model.tick->plant;
-    std::conditional_t<is_in_worlds, State<Pack>, VehicleState<Pack>> state;
-    static_cast<VehicleState<Pack>&>(state) = group.load<VehicleState<Pack>>(lanes.state);
-    auto reference = group.load<BasicReferencePoint<Pack>>(lanes.reference);
+    const auto law = flown<Flown>(model.law);
+    const PlantModel& plant = model.tick.plant;
+    LaneMaps field(model.maps, {group.first, lanes.patches});
+    VehicleState<Pack> states[2];
+    VehicleState<Pack>* state = &states[0];
+    group.load(lanes.state, *state);
+    BasicReferencePoint<Pack> reference;
+    group.load(lanes.reference, reference);
     Pack tick_count = group.load(lanes.tick);
-    auto sums = group.load<BasicFlightSums<Pack>>(lanes.sums);
+    BasicFlightSums<Pack> sums;
+    group.load(lanes.sums, sums);
     Pack rejection(0);
     Pack unclear(0);
-    const auto anchor = group.load<Coordinates>(lanes.anchor);
-    Coordinates before = anchor;
-    const Pack free_motion_m = group.load(lanes.free_motion_m);
+    Coordinates anchor;
+    group.load(lanes.anchor, anchor);
+    Pack free_motion_m = group.load(lanes.free_motion_m);
     const Pack look_tick = group.load(lanes.look_tick);
     const Pack max_speed_m_s = group.load(lanes.max_speed_m_s);
+    const bool has_max_speed = any(max_speed_m_s < Pack(__builtin_huge_val()));
     const Pack ticks = group.load(lanes.ticks);
-    dynamics::Motion<Pack> motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
-    WorldNumbers<Pack> world;
-    Pack noise[noise_count] = {};
-    Pack first_tick;
-    if constexpr (is_in_worlds) {
-        state.world = group.load<WorldMemory<Pack>>(lanes.world_memory);
-        world = group.load<WorldNumbers<Pack>>(lanes.world);
-        first_tick = group.load(lanes.first_tick);
-    }
+    typename WorldsOf<Flown, kind>::Type world(model, group, *state);
+    int looks = 0;
     for (int n = 0; n < max_ticks; ++n) {
+        VehicleState<Pack>* const next = state == &states[0] ? &states[1] : &states[0];
         controllers::Actuation<Pack> given;
-        if (is_in_worlds && model.has_noise) {
-            draw_noises(model, group, first_tick + tick_count, noise);
-        }
-        const auto next =
-            tick_of_lanes<is_in_worlds>(*model.tick, law, world, noise, state, motion, reference, field, given);
+        world.tick(law, tick_count, *state, reference, field, given, *next);
         tick_count = tick_count + Pack(1);
-        reference = reference_at(group, tick_count, Pack(model.tick->tick_s));
-        add_tick(sums, plant, state, next);
-        for (int i = 0; i < 4; ++i) {
-            before.q[i] = state.plant.q[i];
-        }
+        reference = reference_at(group, tick_count, Pack(model.tick.tick_s));
+        add_tick(sums, plant, *state, *next);
         state = next;
-        if constexpr (is_in_worlds) {
-            motion.attitude = dynamics::attitude(plant, state.plant.q[2], state.plant.q[3]);
-        } else {
-            motion = dynamics::motion_at(plant, state.plant.q, state.plant.u);
+        rejection = broken_rule(model.limits, given.saturation, *state, reference);
+        PackMask is_due = (motion_m(model.reach, anchor.q, state->plant.q) > free_motion_m) | (tick_count >= look_tick);
+        if (has_max_speed) {
+            const Pack* u = state->plant.u;
+            is_due = is_due | !(lane::sqrt(u[0] * u[0] + u[1] * u[1]) < max_speed_m_s);
         }
-        rejection = broken_rule(model.limits, given.saturation, state, reference);
-        const Pack* u = state.plant.u;
-        const PackMask is_slow = lane::sqrt(u[0] * u[0] + u[1] * u[1]) < max_speed_m_s;
-        const PackMask is_due =
-            (motion_m(model.reach, anchor.q, state.plant.q) > free_motion_m) | (tick_count >= look_tick);
-        unclear = select(is_due | !is_slow, Pack(1), Pack(0));
-        if constexpr (KnowsFlyableArea<Field>) {
-            Pack scene_x_m(0);
-            Pack scene_z_m(0);
-            if constexpr (is_in_worlds) {
-                scene_x_m = world.scene_x_m;
-                scene_z_m = world.scene_z_m;
-            }
-            unclear = lane::max(unclear, flyable_doubt(plant, state, motion.attitude, scene_x_m, scene_z_m, field));
-        }
-        if (any(is_active & ((rejection > Pack(0)) | (unclear > Pack(0)) | (tick_count >= ticks)))) {
+        unclear =
+            lane::max(select(is_due, Pack(1), Pack(0)),
+                      flyable_doubt(plant, *state, world.attitude(), world.scene_x_m(), world.scene_z_m(), field));
+        if (any(group.is_active & ((rejection > Pack(0)) | (tick_count >= ticks)))) {
             break;
         }
+        if (const unsigned int due = lane::bits_of(group.is_active & (unclear > Pack(0))); due != 0) {
+            // Nothing else leaves its place: most checks end with lanes that fly on.
+            const VehicleState<Pack>& before = state == &states[0] ? states[1] : states[0];
+            for (int i = 0; i < 4; ++i) {
+                group.store(before.plant.q[i], lanes.before[i]);
+                group.store(state->plant.q[i], lanes.state[i]);
+            }
+            group.store(tick_count, lanes.tick);
+            group.store(rejection, lanes.rejection);
+            group.store(unclear, lanes.is_unclear);
+            model.look_around(lanes.flights[0], due << static_cast<unsigned int>(group.first));
+            rejection = group.load(lanes.rejection);
+            unclear = group.load(lanes.is_unclear);
+            if (++looks == max_looks || any(group.is_active & ((rejection > Pack(0)) | (unclear > Pack(0))))) {
+                break;
+            }
+            group.load(lanes.anchor, anchor);
+            free_motion_m = group.load(lanes.free_motion_m);
+        }
     }
-    group.store<VehicleState<Pack>>(state, lanes.state);
-    if constexpr (is_in_worlds) {
-        group.store(state.world, lanes.world_memory);
+    const VehicleState<Pack>& before = state == &states[0] ? states[1] : states[0];
+    for (int i = 0; i < 4; ++i) {
+        group.store(before.plant.q[i], lanes.before[i]);
     }
+    group.store(*state, lanes.state);
+    world.store(group);
     group.store(reference, lanes.reference);
     group.store(tick_count, lanes.tick);
     group.store(sums, lanes.sums);
-    group.store(before, lanes.before);
     group.store(rejection, lanes.rejection);
     group.store(unclear, lanes.is_unclear);
 }
 
 /// The kernel of one law.
-template <class Law>
+template <class Flown>
 #if defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 // Everything in one place. With narrow registers it would not fit into the instruction cache, and what sanitizers add
 // would keep the compiler busy for minutes.
@@ -228,39 +383,41 @@ template <class Law>
 void
 fly_lanes(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks) {
     for (int first = 0; first < lane_count; first += lane::pack_width) {
-        const LaneGroup group{lanes, first};
-        if (!model.is_in_worlds && model.has_map) {
-            fly_group<Law, false>(model, group, max_ticks, MapEffect<Pack>(model.maps));
-        } else if (!model.is_in_worlds) {
-            fly_group<Law, false>(model, group, max_ticks, NoEffect{});
-        } else if (model.has_map) {
-            fly_group<Law, true>(model, group, max_ticks, MapEffect<Pack>(model.maps));
-        } else {
-            fly_group<Law, true>(model, group, max_ticks, NoEffect{});
+        const LaneGroup group(lanes, first);
+        switch (model.kind) {
+            case TickKind::nominal:
+                fly_group<Flown, TickKind::nominal>(model, group, max_ticks);
+                break;
+            case TickKind::in_world:
+                fly_group<Flown, TickKind::in_world>(model, group, max_ticks);
+                break;
+            case TickKind::in_wash:
+                fly_group<Flown, TickKind::in_wash>(model, group, max_ticks);
+                break;
         }
     }
 }
 
-/// The kernel of a law with its aids; of a law that has none, its own.
+/// What flies by a law: the law with its aids, of which it may have none. A type of its own for a law without them
+/// would double the kernels and make none of them faster.
 template <class Law>
-constexpr FlightKernel aided_kernel() {
-    if constexpr (controllers::CanBeAided<Law>) {
-        return fly_lanes<controllers::Aided<Law>>;
-    } else {
-        return fly_lanes<Law>;
-    }
-}
+struct FlownBy {
+    using Type = Law;
+};
+template <controllers::CanBeAided Law>
+struct FlownBy<Law> {
+    using Type = controllers::Aided<Law>;
+};
 
 template <class... Laws>
-FlightKernel kernel_among(std::size_t law, bool is_aided, const std::variant<Laws...>* /*all*/) {
-    static constexpr FlightKernel of_law[] = {fly_lanes<Laws>...};
-    static constexpr FlightKernel of_aided_law[] = {aided_kernel<Laws>()...};
-    return is_aided ? of_aided_law[law] : of_law[law];
+FlightKernel kernel_among(std::size_t law, const std::variant<Laws...>* /*all*/) {
+    static constexpr FlightKernel of_law[] = {fly_lanes<typename FlownBy<Laws>::Type>...};
+    return of_law[law];
 }
 
 /// The kernel of a law, by its number in FlownLaw.
-inline FlightKernel kernel_of(std::size_t law, bool is_aided) {
-    return kernel_among(law, is_aided, static_cast<const FlownLaw*>(nullptr));
+inline FlightKernel kernel_of(std::size_t law) {
+    return kernel_among(law, static_cast<const FlownLaw*>(nullptr));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/flight_job.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
 #include "downwash/simulation/rule_checks.hpp"
@@ -40,6 +41,10 @@ class FlightLane {
 
     [[nodiscard]] bool is_free() const noexcept { return job_ == nullptr; }
 
+    /// The chain whose jobs the lane flies; nullptr for jobs that stand for themselves.
+    [[nodiscard]] FlightChain* chain() const noexcept { return chain_; }
+    void follow(FlightChain* chain) noexcept { chain_ = chain; }
+
     /// Takes a job. A job that is rejected before its first tick leaves the lane free.
     void begin(FlightJob& job) {
         job_ = &job;
@@ -52,27 +57,47 @@ class FlightLane {
         write((world_ != nullptr ? *world_ : setting_->model.nominal_world()).numbers, lanes_->world);
         lanes_->tape[number_] = world_ != nullptr ? world_->world.tape : 0;
         lanes_->is_active[number_] = 1;
+        for (MapPatches<lane_count>& patches : lanes_->patches) {
+            enter(no_patch, patches, number_);
+        }
+        is_idle_ = false;
         level_ = 0;
         look_after_every_tick();
         begin_leg();
     }
 
-    /// Copies another lane, so that a lane without a job computes with ordinary numbers.
+    /// Whether the lane has numbers to compute with: those of its job, or else ordinary ones.
+    [[nodiscard]] bool can_fly() const noexcept { return !is_free() || is_idle_; }
+
+    /// Copies another lane, so that a lane without a job computes with ordinary numbers. The kernel leaves them as they
+    /// are.
     void idle_like(const FlightLane& other) {
         copy_numbers(other);
         lanes_->is_active[number_] = 0;
+        is_idle_ = true;
     }
 
     /// Goes on with another lane's job, and leaves that one free.
     void move_from(FlightLane& other) {
         copy_numbers(other);
         job_ = std::exchange(other.job_, nullptr);
+        chain_ = std::exchange(other.chain_, nullptr);
         leg_ = other.leg_;
         world_ = other.world_;
         first_tick_ = other.first_tick_;
         min_clearance_m_ = other.min_clearance_m_;
         level_ = other.level_;
         lanes_->is_active[other.number_] = 0;
+        is_idle_ = false;
+        other.is_idle_ = true;
+    }
+
+    /// See LookAround. Where the goal is judged too, look() has to decide.
+    void look_around() {
+        if (!is_judged()) {
+            lanes_->rejection[number_] = static_cast<double>(rejection_nearby());
+            lanes_->is_unclear[number_] = 0;
+        }
     }
 
     /// Decides how the flight goes on where the kernel stopped.
@@ -122,6 +147,12 @@ class FlightLane {
     }
     [[nodiscard]] FlightState state() const noexcept {
         return {read<VehicleState<double>>(lanes_->state), read<WorldMemory<double>>(lanes_->world_memory)};
+    }
+
+    /// That of state(), of which it is the first four numbers.
+    [[nodiscard]] PlanarPose pose() const noexcept {
+        return {lanes_->state[0][number_], lanes_->state[1][number_], lanes_->state[2][number_],
+                lanes_->state[3][number_]};
     }
 
     [[nodiscard]] const PlantModel& plant() const noexcept { return setting_->model.tick().plant; }
@@ -183,7 +214,7 @@ class FlightLane {
 
     /// Flyable area and collision at the state of now; how far the robot may move until the next look.
     Rejection rejection_nearby() {
-        const PlanarPose pose = among_obstacles(pose_of(state()), world_);
+        const PlanarPose pose = among_obstacles(this->pose(), world_);
         const CollisionChecker& collisions = setting_->model.collisions();
         const double clearance_m = setting_->rules.finds_min_clearance ? collisions.clearance_m(pose) : HUGE_VAL;
         min_clearance_m_ = std::min(min_clearance_m_, clearance_m);
@@ -222,7 +253,7 @@ class FlightLane {
         if (motion_m <= 2 * clearance_error_m) {
             return false;
         }
-        write(pose_of(state()), lanes_->anchor);
+        write(this->pose(), lanes_->anchor);
         lanes_->free_motion_m[number_] = motion_m - clearance_error_m;
         return true;
     }
@@ -256,11 +287,13 @@ class FlightLane {
     FlightLanes* lanes_;
     int number_;
     FlightJob* job_ = nullptr;
+    FlightChain* chain_ = nullptr;
     std::size_t leg_ = 0;
     const FlownWorld* world_ = nullptr;
     std::int64_t first_tick_ = 0;
     double min_clearance_m_ = HUGE_VAL;  ///< since the job began, when wanted
     int level_ = 0;                      ///< level of the free motion found last
+    bool is_idle_ = false;               ///< the numbers are those that another lane had
 };
 
 }  // namespace downwash::simulation

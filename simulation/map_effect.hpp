@@ -17,7 +17,7 @@ namespace downwash::simulation {
 
 /// The layers of a map that rotors and body of a vehicle fly through.
 struct RotorMaps {
-    const AeroMap* map;
+    const AeroMap* map;            ///< nullptr: there is none, and no surface has an effect
     MapView view[max_rotors + 2];  ///< map of every rotor; at body_place and wall_place those of the body and of walls
     std::size_t layer[max_rotors + 2];  ///< layer of the map, in the same order
     /// The earliest rotor, or the rotor itself, whose look-up serves wherever the blocks of both layers hold the same:
@@ -36,75 +36,116 @@ struct RotorMaps {
 [[nodiscard]] DOWNWASH_EXPORT SidedFactor<double> factor_outside(const RotorMaps& maps, int place, double x_m,
                                                                  double z_m);
 
+/// No map, through which all rotors share one look-up.
+[[nodiscard]] inline RotorMaps no_rotor_maps() noexcept {
+    return {nullptr, {}, {}, {}, {}};
+}
+
+/// The patches of one layer that some flights are in; [..][flight]. Nothing but double.
+template <int flights>
+struct alignas(flights % 8 == 0 ? 64 : 8) MapPatches {
+    double u[flights], w[flights];  ///< members of MapPatch
+    double steps_x[flights], steps_z[flights];
+    double corner[4][flights], above[4][flights];
+    double doubt[flights];      ///< 0 where the cell is flyable throughout
+    double has_above[flights];  ///< 1 where the patch has a part from above
+    double is_apart[flights];   ///< 1 where a follower of the layer's rotor needs a look-up of its own
+};
+
+/// Makes a flight enter a patch. @param is_apart whether a follower of the layer's rotor needs a look-up of its own
+template <int flights>
+[[gnu::always_inline]] inline void enter(const MapPatch& patch, MapPatches<flights>& patches, int flight,
+                                         bool is_apart = false) {
+    patches.u[flight] = patch.u;
+    patches.w[flight] = patch.w;
+    patches.steps_x[flight] = patch.steps_x;
+    patches.steps_z[flight] = patch.steps_z;
+    for (int i = 0; i < 4; ++i) {
+        patches.corner[i][flight] = patch.corner[i];
+        patches.above[i][flight] = patch.above[i];
+    }
+    patches.doubt[flight] = patch.flyability == CellFlyability::flyable ? 0 : 1;
+    const bool has_above = patch.above[0] != 1 || patch.above[1] != 1 || patch.above[2] != 1 || patch.above[3] != 1;
+    patches.has_above[flight] = has_above ? 1 : 0;
+    patches.is_apart[flight] = is_apart ? 1 : 0;
+}
+
+/// The patches of every layer, in the order of RotorMaps, of the flights in the lanes of T.
+template <class T>
+struct OwnPatches {
+    static constexpr int flights = lane::width<T>;
+    static constexpr int first = 0;
+    MapPatches<flights> of_place[max_rotors + 2];
+};
+
+/// The same of as many of a greater number of flights, kept by someone else.
+template <int count>
+struct LentPatches {
+    static constexpr int flights = count;
+    int first;  ///< flight in the first lane of T
+    MapPatches<count>* of_place;
+};
+
 /// The EffectField looked up in a map along the flights of all lanes. It remembers the patch of the map in which every
 /// rotor is; the values are those of AeroMap::factor() to the last bit.
-template <class T>
+/// @tparam Patches OwnPatches or LentPatches
+template <class T, class Patches = OwnPatches<T>>
 class MapEffect {
  public:
     /// @pre `maps` outlives the object
     explicit MapEffect(const RotorMaps& maps) : maps_(maps) {
-        for (Patches& patches : patches_) {
+        for (auto& patches : patches_.of_place) {
             for (int lane = 0; lane < width; ++lane) {
                 enter(nowhere, patches, lane);
             }
         }
-        for (int rotor = 0; rotor < max_rotors; ++rotor) {
-            same_as_[rotor] = maps_.same_as[rotor];
-        }
     }
+    /// @param patches in which the flights are, each perhaps in none   @pre `maps` outlives the object
+    MapEffect(const RotorMaps& maps, const Patches& patches) : maps_(maps), patches_(patches) {}
 
     SidedFactor<T> at_rotor(int rotor, const T& x_m, const T& z_m) { return at_place(rotor, x_m, z_m); }
     /// Holds for the place where the earlier rotor was looked up last.
-    [[nodiscard]] int same_as(int rotor) const { return same_as_[rotor]; }
+    [[nodiscard]] int same_as(int rotor) const {
+        const int earlier = maps_.same_as[rotor];
+        const bool are_together = lane::bits_of(load(patches_.of_place[earlier].is_apart) > T(0)) == 0;
+        return are_together ? earlier : rotor;
+    }
     SidedFactor<T> at_body(const T& x_m, const T& z_m) { return at_place(RotorMaps::body_place, x_m, z_m); }
     T wall_nearness(const T& x_m, const T& z_m) { return at_place(RotorMaps::wall_place, x_m, z_m).all - T(1); }
     MapEffect& as_read() { return *this; }
 
     /// 0 in lanes whose hub is in a cell that is flyable throughout.
     [[nodiscard]] T doubt(int rotor, T x_m, T z_m) {
+        if (maps_.map == nullptr) {
+            return T(0);
+        }
         const Position at = position(rotor, x_m, z_m);
         if (const unsigned int elsewhere = elsewhere_bits(at); elsewhere != 0) {
             move_patches(rotor, at, elsewhere);
         }
-        return lane::load<T>(patches_[rotor].doubt);
+        return load(patches_.of_place[rotor].doubt);
     }
 
  private:
     static constexpr int width = lane::width<T>;
     static constexpr MapPatch nowhere = no_patch;  // a copy with the linkage of T
 
-    /// The patches of one layer that the lanes are in.
-    struct alignas(sizeof(T)) Patches {
-        double u[width], w[width];
-        double steps_x[width], steps_z[width];
-        double corner[4][width], above[4][width];
-        double doubt[width];          ///< 0 where the cell is flyable throughout
-        unsigned int have_above = 0;  ///< the lanes, as bits, whose patch has a part from above
-        unsigned int apart = 0;       ///< the lanes, as bits, in which a follower needs a look-up of its own
-    };
-
     /// Where the lanes are in cells from the lower corner of a layer, and as shares of the patches.
     struct Position {
         T u, w, s, t;
     };
 
-    static void enter(const MapPatch& patch, Patches& patches, int lane) {
-        patches.u[lane] = patch.u;
-        patches.w[lane] = patch.w;
-        patches.steps_x[lane] = patch.steps_x;
-        patches.steps_z[lane] = patch.steps_z;
-        for (int i = 0; i < 4; ++i) {
-            patches.corner[i][lane] = patch.corner[i];
-            patches.above[i][lane] = patch.above[i];
-        }
-        patches.doubt[lane] = patch.flyability == CellFlyability::flyable ? 0 : 1;
-        const unsigned int bit = 1U << static_cast<unsigned int>(lane);
-        const bool has_above = patch.above[0] != 1 || patch.above[1] != 1 || patch.above[2] != 1 || patch.above[3] != 1;
-        patches.have_above = has_above ? patches.have_above | bit : patches.have_above & ~bit;
+    using PlacePatches = MapPatches<Patches::flights>;
+
+    [[nodiscard]] T load(const double (&numbers)[Patches::flights]) const {
+        return lane::load<T>(numbers + patches_.first);
     }
 
     SidedFactor<T> at_place(int place, const T& x_m, const T& z_m) {
-        const Patches& patches = patches_[place];
+        if (maps_.map == nullptr) {
+            return {T(1), T(1)};
+        }
+        const PlacePatches& patches = patches_.of_place[place];
         const Position at = position(place, x_m, z_m);
         if (const unsigned int elsewhere = elsewhere_bits(at); elsewhere != 0) {
             return look_up(place, x_m, z_m, at, elsewhere);
@@ -118,9 +159,8 @@ class MapEffect {
                           (z_m - T(view.z_low_m)) * T(view.cells_per_m));
     }
     [[nodiscard]] Position in_patches(int place, T u, T w) const {
-        const Patches& patches = patches_[place];
-        return {u, w, (u - lane::load<T>(patches.u)) * lane::load<T>(patches.steps_x),
-                (w - lane::load<T>(patches.w)) * lane::load<T>(patches.steps_z)};
+        const PlacePatches& patches = patches_.of_place[place];
+        return {u, w, (u - load(patches.u)) * load(patches.steps_x), (w - load(patches.w)) * load(patches.steps_z)};
     }
 
     /// The lanes whose hub is not in its patch, as bits. Exact: the share of a place in the patch is, and that of any
@@ -129,15 +169,15 @@ class MapEffect {
         return lane::bits_of(!((at.s >= T(0)) & (at.s < T(1)) & (at.t >= T(0)) & (at.t < T(1))));
     }
 
-    static T interpolated(const double (&corners)[4][width], const Position& at) {
-        const T corner[4] = {lane::load<T>(corners[0]), lane::load<T>(corners[1]), lane::load<T>(corners[2]),
-                             lane::load<T>(corners[3])};
+    T interpolated(const double (&corners)[4][Patches::flights], const Position& at) const {
+        const T corner[4] = {load(corners[0]), load(corners[1]), load(corners[2]), load(corners[3])};
         return bilinear(corner, at.s, at.t);
     }
 
     /// Where no lane has a part from above, it is 1 and need not be interpolated.
-    static SidedFactor<T> sides(const Patches& patches, const Position& at) {
-        return {interpolated(patches.corner, at), patches.have_above != 0 ? interpolated(patches.above, at) : T(1)};
+    SidedFactor<T> sides(const PlacePatches& patches, const Position& at) const {
+        const bool have_above = lane::bits_of(load(patches.has_above) > T(0)) != 0;
+        return {interpolated(patches.corner, at), have_above ? interpolated(patches.above, at) : T(1)};
     }
 
     /// A block by its number in a layer, filled if need be.
@@ -168,23 +208,15 @@ class MapEffect {
             const int lane = __builtin_ctz(elsewhere);
             const double u = lane::number_in(at.u, lane);
             const double w = lane::number_in(at.w, lane);
-            const unsigned int bit = 1U << static_cast<unsigned int>(lane);
-            Patches& patches = patches_[place];
-            bool are_together = false;
             if (view.contains(u, w)) {
                 const std::size_t number = block_number(view, u, w);
                 const MapBlock& block = block_in(view, number);
-                enter(patch_in(block, u, w), patches, lane);
-                are_together = all_followers_have(block, number, maps_.followers[place]);
+                const bool is_apart = !all_followers_have(block, number, maps_.followers[place]);
+                enter(patch_in(block, u, w), patches_.of_place[place], patches_.first + lane, is_apart);
             } else {
-                enter(nowhere, patches, lane);
-                outside |= bit;
+                enter(nowhere, patches_.of_place[place], patches_.first + lane, maps_.followers[place] != 0);
+                outside |= 1U << static_cast<unsigned int>(lane);
             }
-            patches.apart = are_together ? patches.apart & ~bit : patches.apart | bit;
-        }
-        for (unsigned int followers = maps_.followers[place]; followers != 0; followers &= followers - 1) {
-            const int follower = __builtin_ctz(followers);
-            same_as_[follower] = patches_[place].apart == 0 ? place : follower;
         }
         return outside;
     }
@@ -193,7 +225,7 @@ class MapEffect {
     [[gnu::noinline]] SidedFactor<T> look_up(int place, T x_m, T z_m, const Position& at, unsigned int elsewhere) {
         unsigned int outside = move_patches(place, at, elsewhere);
         const Position now = in_patches(place, at.u, at.w);
-        SidedFactor<T> result = sides(patches_[place], now);
+        SidedFactor<T> result = sides(patches_.of_place[place], now);
         for (; outside != 0; outside &= outside - 1) {
             const int lane = __builtin_ctz(outside);
             const SidedFactor<double> there =
@@ -205,8 +237,7 @@ class MapEffect {
     }
 
     const RotorMaps& maps_;
-    Patches patches_[max_rotors + 2];
-    int same_as_[max_rotors];  ///< of each rotor, where the earlier one was looked up last
+    Patches patches_;
 };
 
 }  // namespace downwash::simulation

@@ -41,8 +41,17 @@ class NominalSurroundings : public dynamics::CalmSurroundings<T> {
     const TiltLoss& tilt_loss_;
 };
 
-/// The surroundings of a vehicle in a world: surface effects, rotors, wind, slipstreams.
+/// The same of a vehicle with drag: the air stands still. The arm is in no slipstream.
 template <class T, EffectField<T> Field>
+class StillAir : public NominalSurroundings<T, Field> {
+ public:
+    using NominalSurroundings<T, Field>::NominalSurroundings;
+    static constexpr bool has_wind = true;
+};
+
+/// The surroundings of a vehicle in a world: surface effects, rotors, wind, slipstreams.
+/// @tparam may_have_wash false: there are no slipstreams, and no code for them
+template <class T, EffectField<T> Field, bool may_have_wash = true>
 class WorldSurroundings : public dynamics::CalmSurroundings<T> {
  public:
     WorldSurroundings(const WorldNumbers<T>& world, const dynamics::PlanePoint<T>& wind, Field& field,
@@ -63,6 +72,7 @@ class WorldSurroundings : public dynamics::CalmSurroundings<T> {
     T thrust_scale(int rotor) const { return world_.rotor_thrust_scale[rotor]; }
     static constexpr bool has_wind = true;
     dynamics::PlanePoint<T> wind() const { return wind_; }
+    static constexpr bool has_wash = may_have_wash;
     [[nodiscard]] const Slipstreams& slipstreams() const { return slipstreams_; }
     T wash_scale() const { return world_.arm_wash_scale; }
 

@@ -18,6 +18,10 @@ std::uint64_t ClosedLoopFlights::fly(std::span<FlightJob> jobs) {
     return ticks;
 }
 
+void ClosedLoopFlights::fly(std::span<FlightChain* const> chains) {
+    pool_.fly(chains);
+}
+
 SegmentFlight ClosedLoopFlights::fly_again(const ReferenceSegment& segment, FlightState& vehicle,
                                            const FlightWorld& in) const {
     FlightRules to_the_end = pool_.rules();

@@ -12,6 +12,7 @@ class ClosedLoopFlights final : public EdgeFlights {
     ClosedLoopFlights(const SearchTask& task, FlightRules rules, int threads);
 
     std::uint64_t fly(std::span<FlightJob> jobs) override;
+    void fly(std::span<FlightChain* const> chains) override;
     [[nodiscard]] SegmentFlight fly_again(const ReferenceSegment& segment, FlightState& vehicle,
                                           const FlightWorld& in) const override;
     void use_threads(int threads) override { pool_.use_threads(threads); }

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "downwash/search/search_task.hpp"
-#include "downwash/simulation/flight_job.hpp"
+#include "downwash/simulation/flight_batch.hpp"
 
 namespace downwash::planning {
 
@@ -20,6 +20,9 @@ class EdgeFlights {
     /// Flies jobs, each to its end or to where something rejects it.
     /// @return how many states were checked for collision
     virtual std::uint64_t fly(std::span<FlightJob> jobs) = 0;
+
+    /// Flies chains of jobs in the nominal world to their ends.
+    virtual void fly(std::span<FlightChain* const> chains) = 0;
 
     /// Flies one segment from a vehicle, which is replaced by that at the end; never ended from outside. The same
     /// vehicle comes out as of a job, to the last bit. May be called from any thread.

@@ -54,10 +54,10 @@ ReferenceSegment FlightTree::segment_to(const FlightNode& from, const ReferenceP
     return {from.reference, to, ticks, flights_.task().model.tick().tick_s};
 }
 
-std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge) {
+std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge, FlightStatistics& counts) const {
     const ReferenceSegment segment = flights_.fastest_segment(edge.from->reference, edge.to);
     if (segment.ticks() > max_plan_ticks - edge.from->ticks_from_start) {
-        flights_.count_rejection("too_long");
+        PlannedFlights::count_rejection("too_long", counts);
         return std::nullopt;
     }
     // A passage may be out of reach at its speed.
@@ -65,7 +65,7 @@ std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge) 
     if ((begins_in_passage || !is_at_rest(edge.to)) && !keeps_limits(segment, flights_.limits())) {
         return std::nullopt;
     }
-    return flights_.is_worth_flying(segment) ? std::optional(segment) : std::nullopt;
+    return flights_.is_worth_flying(segment, counts) ? std::optional(segment) : std::nullopt;
 }
 
 std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const FleetJob& job) const {
@@ -80,18 +80,108 @@ std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const
 std::vector<std::optional<FlightTree::Flown>> FlightTree::flown(std::span<const Edge> edges) {
     std::vector<FleetJob> jobs;
     std::vector<std::size_t> edge_of;
+    FlightStatistics counts;
     for (std::size_t i = 0; i < edges.size(); ++i) {
-        if (const auto segment = promising_segment(edges[i])) {
+        if (const auto segment = promising_segment(edges[i], counts)) {
             jobs.push_back(flights_.job(edges[i].from->fleet, edges[i].from->ticks_from_start, {{*segment}}));
             edge_of.push_back(i);
         }
     }
+    flights_.add(counts);
     flights_.fly(jobs);
     std::vector<std::optional<Flown>> results(edges.size());
     for (std::size_t job = 0; job < jobs.size(); ++job) {
         results[edge_of[job]] = flown(*edges[edge_of[job]].from, jobs[job]);
     }
     return results;
+}
+
+/// A chain of edges as the jobs that a pool flies.
+class FlightTree::JobChain final : public FlightChain {
+ public:
+    JobChain(const FlightTree& tree, EdgeChain& edges) : tree_(tree), edges_(edges) {}
+
+    FlightJob* next() override {
+        if (from_ != nullptr) {
+            tree_.flights_.count_nominal(job_, steps_.back().flown);
+            if (job_.jobs.front().rejection() == Rejection::interrupted) {
+                return nullptr;
+            }
+            edges_.note(tree_.flown(*from_, job_));
+            from_ = nullptr;
+        }
+        while (const std::optional<Edge> edge = edges_.next()) {
+            Step& step = steps_.emplace_back();
+            if (const auto segment = tree_.promising_segment(*edge, step.promised)) {
+                from_ = edge->from;
+                job_ = tree_.flights_.job(from_->fleet, from_->ticks_from_start, {{*segment}});
+                return &job_.jobs.front();
+            }
+            edges_.note(std::nullopt);
+        }
+        return nullptr;
+    }
+
+    /// What is to be counted of each edge: before it was flown, and then.
+    struct Step {
+        FlightStatistics promised, flown;
+    };
+    [[nodiscard]] const std::vector<Step>& steps() const noexcept { return steps_; }
+
+ private:
+    const FlightTree& tree_;
+    EdgeChain& edges_;
+    std::vector<Step> steps_;
+    const FlightNode* from_ = nullptr;  ///< of the edge under way
+    FleetJob job_;
+};
+
+void FlightTree::fly(std::span<EdgeChain* const> chains) {
+    if (!flights_.can_fly_chains() || !flights_.is_one_world()) {
+        fly_in_rounds(chains);
+        return;
+    }
+    std::deque<JobChain> jobs;
+    std::vector<FlightChain*> all;
+    for (EdgeChain* chain : chains) {
+        all.push_back(&jobs.emplace_back(*this, *chain));
+    }
+    flights_.fly(all);
+    // Counted as in rounds, whatever ended first: of two obstructions as near to the goal the first one stays.
+    std::size_t rounds = 0;
+    for (const JobChain& chain : jobs) {
+        rounds = std::max(rounds, chain.steps().size());
+    }
+    for (std::size_t round = 0; round < rounds; ++round) {
+        for (const auto counts : {&JobChain::Step::promised, &JobChain::Step::flown}) {
+            for (const JobChain& chain : jobs) {
+                if (round < chain.steps().size()) {
+                    flights_.add(chain.steps()[round].*counts);
+                }
+            }
+        }
+    }
+}
+
+/// In many worlds it is known after every round which of them reject most, and are to be flown in first.
+void FlightTree::fly_in_rounds(std::span<EdgeChain* const> chains) {
+    for (;;) {
+        std::vector<Edge> edges;
+        std::vector<EdgeChain*> owners;
+        for (EdgeChain* chain : chains) {
+            if (const std::optional<Edge> edge = chain->next()) {
+                edges.push_back(*edge);
+                owners.push_back(chain);
+            }
+        }
+        if (edges.empty()) {
+            return;
+        }
+        auto flights = flown(edges);
+        for (std::size_t i = 0; i < flights.size(); ++i) {
+            owners[i]->note(std::move(flights[i]));
+        }
+    }
 }
 
 FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {

@@ -70,6 +70,23 @@ class FlightTree {
     /// Flies edges side by side; nothing for those that are rejected.
     [[nodiscard]] std::vector<std::optional<Flown>> flown(std::span<const Edge> edges);
 
+    /// Edges that are flown one after the other, of which each is chosen when the one before was flown. All threads of
+    /// the flights may ask, one at a time for one chain and several at once for several chains.
+    class EdgeChain {
+     public:
+        EdgeChain() = default;
+        virtual ~EdgeChain() = default;
+        EdgeChain(const EdgeChain&) = delete;
+        EdgeChain& operator=(const EdgeChain&) = delete;
+
+        /// The edge to fly now; nothing at the end of the chain.
+        [[nodiscard]] virtual std::optional<Edge> next() = 0;
+        /// What became of it; nothing if it was rejected.
+        virtual void note(std::optional<Flown> flight) = 0;
+    };
+    /// Flies chains to their ends, side by side.
+    void fly(std::span<EdgeChain* const> chains);
+
     /// Adds what was flown below its parent.
     FlightNode& add(FlightNode& parent, const Flown& flight);
 
@@ -95,7 +112,9 @@ class FlightTree {
  private:
     [[nodiscard]] ReferenceSegment segment_to(const FlightNode& from, const ReferencePoint& to,
                                               std::int64_t ticks) const;
-    [[nodiscard]] std::optional<ReferenceSegment> promising_segment(const Edge& edge);
+    class JobChain;
+    void fly_in_rounds(std::span<EdgeChain* const> chains);
+    [[nodiscard]] std::optional<ReferenceSegment> promising_segment(const Edge& edge, FlightStatistics& counts) const;
     [[nodiscard]] std::optional<Flown> flown(const FlightNode& from, const FleetJob& job) const;
     [[nodiscard]] FleetJob hold_job(const FlightNode& at) const;
     [[nodiscard]] FleetJob edge_job(const FlightNode& from, const FlightNode& to) const;

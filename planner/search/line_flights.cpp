@@ -94,6 +94,14 @@ std::uint64_t LineFlights::fly(std::span<FlightJob> jobs) {
     return checked;
 }
 
+void LineFlights::fly(std::span<FlightChain* const> chains) {
+    for (FlightChain* chain : chains) {
+        while (FlightJob* job = chain->next()) {
+            fly(std::span(job, 1));
+        }
+    }
+}
+
 SegmentFlight LineFlights::fly_again(const ReferenceSegment& segment, FlightState& vehicle, const FlightWorld&) const {
     std::uint64_t checked = 0;
     return flown(segment, vehicle, checked);

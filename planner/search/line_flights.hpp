@@ -12,6 +12,7 @@ class LineFlights final : public EdgeFlights {
     LineFlights(const SearchTask& task, FlightRules rules);
 
     std::uint64_t fly(std::span<FlightJob> jobs) override;
+    void fly(std::span<FlightChain* const> chains) override;
     /// In the nominal world; lines know no other.
     [[nodiscard]] SegmentFlight fly_again(const ReferenceSegment& segment, FlightState& vehicle,
                                           const FlightWorld& in) const override;

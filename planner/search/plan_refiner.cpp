@@ -1,6 +1,7 @@
 #include "downwash/search/plan_refiner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <utility>
 
@@ -8,6 +9,9 @@ namespace downwash::planning {
 namespace {
 
 constexpr int changes_side_by_side = 8;
+
+/// How many batches are drawn at once: as many as have failed in a row, and one more, but no more than this.
+constexpr std::size_t max_batches_ahead = 4;
 
 /// Changes begin with the largest and shrink to this share of them.
 constexpr double min_step = 0.01;
@@ -35,7 +39,20 @@ constexpr double max_cost_ratio = 1.5;
 }  // namespace
 
 PlanRefiner::PlanRefiner(FlightPoint start, PlannedFlights& flights, Random& random)
-    : start_(std::move(start)), flights_(flights), changes_(flights, random) {}
+    : start_(std::move(start)), flights_(flights), random_(random), changes_(flights, random) {}
+
+void PlanRefiner::Pace::succeed() noexcept {
+    step = std::min(1.0, 1.5 * step);
+    failures = 0;
+}
+
+void PlanRefiner::Pace::fail() noexcept {
+    step = std::max(min_step, 0.9 * step);
+    if (++failures >= max_failures) {
+        step = 1;
+        failures = 0;
+    }
+}
 
 const FlownPlan* PlanRefiner::best() const noexcept {
     return tracks_.empty() ? nullptr : &tracks_.front().plan;
@@ -118,18 +135,20 @@ std::vector<std::optional<FlownPlan>> PlanRefiner::flown_whole(const std::vector
 std::optional<FlownPlan> PlanRefiner::repaired(const Change& plan) {
     for (int batch = 0; batch < repair_batches; ++batch) {
         std::vector<Change> changes;
+        FlightStatistics counts;
         if (batch == 0) {
             for (const double share : repair_shares) {
-                if (auto change = moved_into_goal(plan, share)) {
+                if (auto change = moved_into_goal(plan, share, counts)) {
                     changes.push_back(std::move(*change));
                 }
             }
         }
         for (int tries = 0; tries < 4 * changes_side_by_side && changes.size() < changes_side_by_side; ++tries) {
-            if (auto change = changed(plan.points, plan.ticks, repair_step)) {
+            if (auto change = changed(plan.points, plan.ticks, repair_step, counts)) {
                 changes.push_back(std::move(*change));
             }
         }
+        flights_.add(counts);
         std::optional<FlownPlan> best;
         for (std::optional<FlownPlan>& flown : flown_whole(changes)) {
             if (flown && (!best || flown->cost < best->cost)) {
@@ -189,7 +208,7 @@ std::optional<FlownPlan> PlanRefiner::last_that_flies(Lineage& lineage) {
 
 void PlanRefiner::add(FlownPlan plan, Lineage lineage) {
     const double cost = plan.cost;
-    Track track{std::move(plan), std::move(lineage), cost, ++taken_};
+    Track track{std::move(plan), ++versions_, std::move(lineage), cost, ++taken_};
     if (tracks_.empty() || track.plan.cost < tracks_.front().plan.cost) {
         if (!tracks_.empty()) {
             tracks_.front().batches = 0;  // it has its turns to overtake before it
@@ -218,12 +237,15 @@ std::vector<Lineage> PlanRefiner::release() {
 }
 
 std::optional<PlanRefiner::Change> PlanRefiner::changed(const std::vector<ReferencePoint>& points,
-                                                        const std::vector<std::int64_t>& ticks, double step) {
+                                                        const std::vector<std::int64_t>& ticks, double step,
+                                                        FlightStatistics& counts) {
     auto drawn = changes_.draw(points, ticks, step);
-    return drawn ? timed(std::move(drawn->points), ticks, drawn->first_segment, drawn->last_segment) : std::nullopt;
+    return drawn ? timed(std::move(drawn->points), ticks, drawn->first_segment, drawn->last_segment, counts)
+                 : std::nullopt;
 }
 
-std::optional<PlanRefiner::Change> PlanRefiner::moved_into_goal(const Change& plan, double share) {
+std::optional<PlanRefiner::Change> PlanRefiner::moved_into_goal(const Change& plan, double share,
+                                                                FlightStatistics& counts) const {
     const Configuration end = configuration_of(plan.points.back());
     const Configuration moved = flights_.goal().moved_into(end, share);
     if (moved == end) {
@@ -231,14 +253,14 @@ std::optional<PlanRefiner::Change> PlanRefiner::moved_into_goal(const Change& pl
     }
     std::vector<ReferencePoint> points = plan.points;
     points.back() = at_rest(moved);
-    return timed(std::move(points), plan.ticks, plan.ticks.size() - 1, plan.ticks.size() - 1);
+    return timed(std::move(points), plan.ticks, plan.ticks.size() - 1, plan.ticks.size() - 1, counts);
 }
 
 /// Gives segments `first` to `last` as few ticks as they need, if they may be worth flying. The others keep their
 /// ticks; their numbers may have shifted by a corner more or less.
 std::optional<PlanRefiner::Change> PlanRefiner::timed(std::vector<ReferencePoint> points,
                                                       const std::vector<std::int64_t>& old_ticks, std::size_t first,
-                                                      std::size_t last) {
+                                                      std::size_t last, FlightStatistics& counts) const {
     Change change{std::move(points), {}, first, last};
     const std::size_t segments = change.points.size() - 1;
     const std::size_t old_segments = old_ticks.size();
@@ -252,7 +274,7 @@ std::optional<PlanRefiner::Change> PlanRefiner::timed(std::vector<ReferencePoint
                 return std::nullopt;
             }
             const ReferenceSegment segment = flights_.fastest_segment(change.points[i], change.points[i + 1]);
-            if (!keeps_limits(segment, flights_.limits()) || !flights_.is_worth_flying(segment)) {
+            if (!keeps_limits(segment, flights_.limits()) || !flights_.is_worth_flying(segment, counts)) {
                 return std::nullopt;
             }
             change.ticks.push_back(segment.ticks());
@@ -282,64 +304,142 @@ double PlanRefiner::saved_before_rounding(const FlownPlan& base, const Change& c
     return needed_s(base.points, change.first, last_before) - needed_s(change.points, change.first, change.last);
 }
 
-/// Flies changes in the nominal world: their own segments first and, where one gets to the old plan's next corner for
-/// less, the rest of the plan, hold included. The promising ones are flown in the other worlds, the cheapest first,
-/// until one is accepted and cheaper there, too.
-std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::vector<Change>& changes) {
-    std::vector<FleetJob> jobs;
-    jobs.reserve(changes.size());
-    for (const Change& change : changes) {
-        jobs.push_back(job_for({base.fleets[change.first].front()}, change, change.first, change.last));
+namespace {
+
+/// Costs that are nothing but ticks differ by rounding where they are the same.
+constexpr double same_cost = 1e-9;
+
+/// @param saved see PlanRefiner::saved_before_rounding()
+bool is_better(double cost, double old_cost, double saved) {
+    return cost < (saved > same_cost ? old_cost + same_cost : old_cost);
+}
+
+}  // namespace
+
+/// Whether a change, as far as a job flies it, is accepted in the nominal world and costs less there than the old plan
+/// did up to the same place.
+bool PlanRefiner::costs_less(const FlownPlan& base, const Change& change, const FleetJob& job, double saved) const {
+    if (!job.is_accepted()) {
+        return false;
     }
-    flights_.fly_nominal(jobs);
-    const auto is_whole = [&](std::size_t i) {
-        return changes[i].first + jobs[i].legs().size() == changes[i].ticks.size() + 1;
-    };
-    std::vector<double> saved;
-    saved.reserve(changes.size());
-    for (const Change& change : changes) {
-        saved.push_back(saved_before_rounding(base, change));
+    const std::size_t old_corner = change.last + 1 + base.ticks.size() - change.ticks.size();
+    const double old_cost = is_whole(change, job) ? base.nominal_cost : base.nominal_costs[old_corner];
+    return is_better(nominal_cost_after(base, change, job), old_cost, saved);
+}
+
+bool PlanRefiner::is_whole(const Change& change, const FleetJob& job) {
+    return change.first + job.legs().size() == change.ticks.size() + 1;
+}
+
+/// A change in the nominal world: its own segments and, where they get to the old plan's next corner for less, the rest
+/// of the plan, hold included.
+class PlanRefiner::ChangeFlight final : public FlightChain {
+ public:
+    /// @param job gets the flight
+    ChangeFlight(const PlanRefiner& refiner, const FlownPlan& base, const Change& change, double saved, FleetJob& job)
+        : refiner_(refiner), base_(base), change_(change), saved_(saved), job_(job) {}
+
+    FlightJob* next() override {
+        ++flown_;
+        if (flown_ == 0) {
+            job_ = refiner_.job_for({base_.fleets[change_.first].front()}, change_, change_.first, change_.last);
+            return &job_.jobs.front();
+        }
+        refiner_.flights_.count_nominal(flown_ == 1 ? job_ : rest_, counts[flown_ - 1]);
+        if (flown_ == 1 && !is_whole(change_, job_) && refiner_.costs_less(base_, change_, job_, saved_)) {
+            rest_ = refiner_.job_for(job_.end(), change_, change_.last + 1, change_.ticks.size() - 1);
+            return &rest_.jobs.front();
+        }
+        if (flown_ == 2) {
+            std::ranges::copy(rest_.legs(), std::back_inserter(job_.jobs.front().legs));
+        }
+        return nullptr;
     }
-    // Costs that are nothing but ticks differ by rounding where they are the same.
-    constexpr double same_cost = 1e-9;
-    const auto is_better = [&](std::size_t i, double cost, double old_cost) {
-        return cost < (saved[i] > same_cost ? old_cost + same_cost : old_cost);
-    };
-    const auto costs_less = [&](std::size_t i) {
-        const std::size_t old_corner = changes[i].last + 1 + base.ticks.size() - changes[i].ticks.size();
-        const double old_cost = is_whole(i) ? base.nominal_cost : base.nominal_costs[old_corner];
-        return jobs[i].is_accepted() && is_better(i, nominal_cost_after(base, changes[i], jobs[i]), old_cost);
-    };
+
+    std::array<FlightStatistics, 2> counts;  ///< of its own segments, and of the rest
+
+ private:
+    const PlanRefiner& refiner_;
+    const FlownPlan& base_;
+    const Change& change_;
+    double saved_;
+    FleetJob& job_;
+    FleetJob rest_;
+    int flown_ = -1;  ///< jobs
+};
+
+/// Flies changes in the nominal world.
+/// @param tracks that the batches were drawn from
+void PlanRefiner::fly_nominal(std::span<Batch> batches, std::span<const Track* const> tracks) {
+    std::deque<ChangeFlight> flights;
+    std::vector<FlightChain*> chains;
+    for (std::size_t i = 0; i < batches.size(); ++i) {
+        Batch& batch = batches[i];
+        batch.jobs.resize(batch.changes.size());
+        for (std::size_t change = 0; change < batch.changes.size(); ++change) {
+            batch.saved.push_back(saved_before_rounding(tracks[i]->plan, batch.changes[change]));
+            chains.push_back(&flights.emplace_back(*this, tracks[i]->plan, batch.changes[change], batch.saved.back(),
+                                                   batch.jobs[change]));
+        }
+    }
+    flights_.fly(chains);
+    // All counts of a batch in the order in which its flights would follow one another in two steps.
+    auto first = flights.begin();
+    for (Batch& batch : batches) {
+        const auto last = first + static_cast<std::ptrdiff_t>(batch.changes.size());
+        for (const std::size_t step : {0U, 1U}) {
+            for (auto flight = first; flight != last; ++flight) {
+                batch.counts += flight->counts[step];
+            }
+        }
+        first = last;
+    }
+}
+
+/// The same of flights that cannot be flown as chains.
+void PlanRefiner::fly_in_two_steps(Batch& batch, const FlownPlan& base) {
+    for (const Change& change : batch.changes) {
+        batch.jobs.push_back(job_for({base.fleets[change.first].front()}, change, change.first, change.last));
+        batch.saved.push_back(saved_before_rounding(base, change));
+    }
+    flights_.fly_nominal(batch.jobs);
     std::vector<std::size_t> unfinished;
     std::vector<FleetJob> rests;
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-        if (costs_less(i) && !is_whole(i)) {
+    for (std::size_t i = 0; i < batch.jobs.size(); ++i) {
+        const Change& change = batch.changes[i];
+        if (!is_whole(change, batch.jobs[i]) && costs_less(base, change, batch.jobs[i], batch.saved[i])) {
             unfinished.push_back(i);
-            rests.push_back(job_for(jobs[i].end(), changes[i], changes[i].last + 1, changes[i].ticks.size() - 1));
+            rests.push_back(job_for(batch.jobs[i].end(), change, change.last + 1, change.ticks.size() - 1));
         }
     }
     flights_.fly_nominal(rests);
     for (std::size_t i = 0; i < rests.size(); ++i) {
-        std::ranges::copy(rests[i].legs(), std::back_inserter(jobs[unfinished[i]].jobs.front().legs));
+        std::ranges::copy(rests[i].legs(), std::back_inserter(batch.jobs[unfinished[i]].jobs.front().legs));
     }
+}
+
+/// Flies the promising ones of a batch in the other worlds, the cheapest first, until one is accepted and cheaper
+/// there, too.
+std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, Batch& batch) {
     std::vector<std::size_t> promising;
-    for (std::size_t i = 0; i < jobs.size(); ++i) {
-        if (is_whole(i) && costs_less(i)) {
+    for (std::size_t i = 0; i < batch.jobs.size(); ++i) {
+        if (is_whole(batch.changes[i], batch.jobs[i]) &&
+            costs_less(base, batch.changes[i], batch.jobs[i], batch.saved[i])) {
             promising.push_back(i);
         }
     }
     std::stable_sort(promising.begin(), promising.end(), [&](std::size_t a, std::size_t b) {
-        return nominal_cost_after(base, changes[a], jobs[a]) - saved[a] <
-               nominal_cost_after(base, changes[b], jobs[b]) - saved[b];
+        return nominal_cost_after(base, batch.changes[a], batch.jobs[a]) - batch.saved[a] <
+               nominal_cost_after(base, batch.changes[b], batch.jobs[b]) - batch.saved[b];
     });
     for (const std::size_t i : promising) {
-        const Change& change = changes[i];
+        const Change& change = batch.changes[i];
         std::vector<FleetJob> whole{job_for(base.fleets[change.first], change, change.first, change.ticks.size() - 1)};
-        whole.front().jobs.front() = std::move(jobs[i].jobs.front());
+        whole.front().jobs.front() = std::move(batch.jobs[i].jobs.front());
         flights_.fly_in_other_worlds(whole);
         if (whole.front().is_accepted()) {
             FlownPlan plan = flown(base, change, whole.front());
-            if (is_better(i, plan.cost, base.cost)) {
+            if (is_better(plan.cost, base.cost, batch.saved[i])) {
                 return plan;
             }
         }
@@ -347,33 +447,89 @@ std::optional<FlownPlan> PlanRefiner::best_of(const FlownPlan& base, const std::
     return std::nullopt;
 }
 
+/// Draws the next batch of changes, and where several fly at once those that follow if it fails. All are flown.
+void PlanRefiner::draw_batches() {
+    const bool can_fly_chains = flights_.can_fly_chains();
+    const std::size_t wanted = can_fly_chains ? std::min(failures_in_a_row_ + 1, max_batches_ahead) : 1;
+    const Random now = random_;
+    std::vector<Pace> paces;
+    for (const Track& track : tracks_) {
+        paces.push_back(track.pace);
+    }
+    std::vector<Batch> drawn;
+    std::vector<const Track*> drawn_from;
+    for (std::size_t ahead = 0; ahead < wanted; ++ahead) {
+        const std::size_t turn = turn_ + ahead;
+        const std::size_t number = turn % tracks_.size();
+        const Track& track = tracks_[number];
+        Batch batch{turn, tracks_.size(), track.version, paces[number].step, random_, random_, {}, {}, {}, {}};
+        for (int tries = 0; tries < 4 * changes_side_by_side && batch.changes.size() < changes_side_by_side; ++tries) {
+            if (auto change = changed(track.plan.points, track.plan.ticks, batch.step, batch.counts)) {
+                batch.changes.push_back(std::move(*change));
+            }
+        }
+        batch.after = random_;
+        paces[number].fail();
+        drawn.push_back(std::move(batch));
+        drawn_from.push_back(&track);
+    }
+    random_ = now;
+    if (can_fly_chains) {
+        fly_nominal(drawn, drawn_from);
+    } else {
+        fly_in_two_steps(drawn.front(), drawn_from.front()->plan);
+    }
+    for (Batch& batch : drawn) {
+        batches_.push_back(std::move(batch));
+    }
+    // A flight that was ended from outside says nothing of what it would have come to.
+    const bool is_interrupted = std::any_of(batches_.begin(), batches_.end(), [](const Batch& batch) {
+        return std::any_of(batch.jobs.begin(), batch.jobs.end(),
+                           [](const FleetJob& job) { return job.jobs.front().rejection() == Rejection::interrupted; });
+    });
+    if (is_interrupted) {
+        batches_.erase(batches_.begin() + 1, batches_.end());
+    }
+}
+
+/// Whether a batch is what would be drawn now.
+bool PlanRefiner::is_due(const Batch& batch) const {
+    const Track& track = tracks_[turn_ % tracks_.size()];
+    return batch.turn == turn_ && batch.tracks == tracks_.size() && batch.version == track.version &&
+           batch.step == track.pace.step && batch.before == random_;
+}
+
+PlanRefiner::Batch PlanRefiner::next_batch() {
+    if (batches_.empty() || !is_due(batches_.front())) {
+        batches_.clear();
+        draw_batches();
+    }
+    Batch batch = std::move(batches_.front());
+    batches_.pop_front();
+    random_ = batch.after;
+    flights_.add(batch.counts);
+    return batch;
+}
+
 void PlanRefiner::improve() {
     if (tracks_.empty()) {
         return;
     }
+    Batch batch = next_batch();
     const std::size_t number = turn_++ % tracks_.size();
     Track& track = tracks_[number];
-    std::vector<Change> changes;
-    for (int tries = 0; tries < 4 * changes_side_by_side && changes.size() < changes_side_by_side; ++tries) {
-        if (auto change = changed(track.plan.points, track.plan.ticks, track.step)) {
-            changes.push_back(std::move(*change));
-        }
-    }
-    const std::optional<FlownPlan> best = best_of(track.plan, changes);
-    if (best) {
-        track.plan = *best;
+    if (std::optional<FlownPlan> best = best_of(track.plan, batch)) {
+        track.plan = std::move(*best);
+        track.version = ++versions_;
         if (track.plan.cost < (1 - lineage_step) * track.kept_cost) {
             track.lineage.push_back(plan_of(track.plan));
             track.kept_cost = track.plan.cost;
         }
-        track.step = std::min(1.0, 1.5 * track.step);
-        track.failures = 0;
+        track.pace.succeed();
+        failures_in_a_row_ = 0;
     } else {
-        track.step = std::max(min_step, 0.9 * track.step);
-        if (++track.failures >= max_failures) {
-            track.step = 1;
-            track.failures = 0;
-        }
+        track.pace.fail();
+        ++failures_in_a_row_;
     }
     ++track.batches;
     if (number > 0) {

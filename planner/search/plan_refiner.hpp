@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <optional>
 #include <vector>
 
@@ -60,14 +62,22 @@ class PlanRefiner {
 
  private:
     static constexpr std::size_t max_tracks = 2;
+    /// How large the changes of a plan are.
+    struct Pace {
+        double step = 1;   ///< as a share of the largest
+        int failures = 0;  ///< batches since the last success, or since steps became large again
+
+        void succeed() noexcept;
+        void fail() noexcept;
+    };
     struct Track {
         FlownPlan plan;
-        Lineage lineage;   ///< up to the plan, or to one that it has become a little cheaper than
-        double kept_cost;  ///< cost of the last of them
-        int number;        ///< number of the plan that was taken on
-        double step = 1;   ///< size of changes, as a share of the largest
-        int failures = 0;  ///< batches since the last success, or since steps became large again
-        int batches = 0;   ///< batches in which it was worked on
+        std::uint64_t version;  ///< of the plan: no two plans have the same
+        Lineage lineage;        ///< up to the plan, or to one that it has become a little cheaper than
+        double kept_cost;       ///< cost of the last of them
+        int number;             ///< number of the plan that was taken on
+        Pace pace = {};
+        int batches = 0;  ///< batches in which it was worked on
     };
     /// A changed plan that may be worth flying.
     struct Change {
@@ -76,13 +86,42 @@ class PlanRefiner {
         std::size_t first = 0, last = 0;  ///< segments that differ from a plan that was flown
     };
 
+    /// A batch of changes that was drawn, and flown in the nominal world. Its results are those of whenever its turn
+    /// comes, if nothing has changed that it was drawn from: improve() draws and flies some batches at once, as if none
+    /// of them found a better plan, and throws away those that were drawn in vain.
+    struct Batch {
+        // What it was drawn from.
+        std::size_t turn = 0;
+        std::size_t tracks = 0;
+        std::uint64_t version = 0;
+        double step = 0;
+        Random before;
+
+        Random after;  ///< the random numbers that follow
+        std::vector<Change> changes;
+        std::vector<double> saved;   ///< saved_before_rounding() of each
+        std::vector<FleetJob> jobs;  ///< of the whole plan where the change itself is promising
+        FlightStatistics counts;     ///< to be counted when its turn comes
+    };
+    class ChangeFlight;
+    [[nodiscard]] Batch next_batch();
+    [[nodiscard]] bool is_due(const Batch& batch) const;
+    void draw_batches();
+    void fly_nominal(std::span<Batch> batches, std::span<const Track* const> tracks);
+    void fly_in_two_steps(Batch& batch, const FlownPlan& base);
+    /// Whether a job flies a change to the end of its plan.
+    [[nodiscard]] static bool is_whole(const Change& change, const FleetJob& job);
+    [[nodiscard]] bool costs_less(const FlownPlan& base, const Change& change, const FleetJob& job, double saved) const;
+
     [[nodiscard]] std::optional<Change> changed(const std::vector<ReferencePoint>& points,
-                                                const std::vector<std::int64_t>& ticks, double step);
+                                                const std::vector<std::int64_t>& ticks, double step,
+                                                FlightStatistics& counts);
     /// A change that the plan's end is moved into the goal, so far that it uses up at most this share of the tolerance.
-    [[nodiscard]] std::optional<Change> moved_into_goal(const Change& plan, double share);
+    [[nodiscard]] std::optional<Change> moved_into_goal(const Change& plan, double share,
+                                                        FlightStatistics& counts) const;
     [[nodiscard]] std::optional<Change> timed(std::vector<ReferencePoint> points,
                                               const std::vector<std::int64_t>& old_ticks, std::size_t first,
-                                              std::size_t last);
+                                              std::size_t last, FlightStatistics& counts) const;
     [[nodiscard]] std::optional<FlownPlan> repaired(const Change& plan);
     [[nodiscard]] std::optional<FlownPlan> last_that_flies(Lineage& lineage);
     void add(FlownPlan plan, Lineage lineage);
@@ -97,15 +136,19 @@ class PlanRefiner {
     /// What a change saves of the time that its segments need before it is rounded up to ticks [s]. 0 unless ticks are
     /// all that a plan costs: then it tells apart changes of the same cost.
     [[nodiscard]] double saved_before_rounding(const FlownPlan& base, const Change& change) const;
-    [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, const std::vector<Change>& changes);
+    [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, Batch& batch);
     [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FleetJob& job) const;
 
     FlightPoint start_;
     PlannedFlights& flights_;
+    Random& random_;
     PlanChanges changes_;
     std::vector<Track> tracks_;  ///< the best first
     int taken_ = 0;
     std::size_t turn_ = 0;
+    std::uint64_t versions_ = 0;         ///< of plans so far
+    std::deque<Batch> batches_;          ///< drawn ahead, the next one first
+    std::size_t failures_in_a_row_ = 0;  ///< batches without a better plan, of whichever track
 };
 
 }  // namespace downwash::planning

@@ -114,14 +114,14 @@ void PlannedFlights::forget() {
     statistics_.rejected = no_rejections();
 }
 
-void PlannedFlights::count_rejection(const std::string& cause) {
-    ++statistics_.rejected[cause];
-    ++statistics_.rejections;
+void PlannedFlights::count_rejection(const std::string& cause, FlightStatistics& counts) {
+    ++counts.rejected[cause];
+    ++counts.rejections;
 }
 
-void PlannedFlights::count_rejection(Rejection rejection) {
+void PlannedFlights::count_rejection(Rejection rejection, FlightStatistics& counts) {
     if (rejection != Rejection::interrupted) {
-        count_rejection(cause_of(rejection));
+        count_rejection(cause_of(rejection), counts);
     }
 }
 
@@ -129,19 +129,20 @@ bool PlannedFlights::leads_to_goal(const ReferenceSegment& segment) const {
     return goal().contains(configuration_of(segment.to()));
 }
 
-void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at) {
-    count_rejection(rejection);
+void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at,
+                            FlightStatistics& counts) const {
+    count_rejection(rejection, counts);
     if (rejection == Rejection::interrupted || !leads_to_goal(segment)) {
         return;
     }
     const double distance_m = goal().distance_m(at);
-    std::optional<Obstruction>& nearest = statistics_.obstruction;
+    std::optional<Obstruction>& nearest = counts.obstruction;
     if (!nearest || distance_m < nearest->goal_distance_m) {
         nearest = {cause_of(rejection), at, distance_m};
     }
 }
 
-bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
+bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment, FlightStatistics& counts) const {
     constexpr double spacing_m = 0.1;
     const std::int64_t samples = samples_along(segment, task_, spacing_m);
     const auto at = [&](std::int64_t i) { return segment.at_tick(segment.ticks() * i / samples); };
@@ -152,14 +153,14 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     Rejection rejection = Rejection::none;
     for (std::int64_t i = samples; i >= 1 && rejection == Rejection::none;
          --i) {  // the new end first: likelier to collide
-        ++statistics_.states_checked;
+        ++counts.states_checked;
         rejection = rejection_at(at(i));
     }
     if (rejection == Rejection::none) {
         return true;
     }
     if (!leads_to_goal(segment)) {
-        count_rejection(rejection);
+        count_rejection(rejection, counts);
         return false;
     }
     // Of a way to the goal the place matters where a flight would have been stopped.
@@ -167,25 +168,32 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment) {
     while (rejection_at(at(first)) == Rejection::none) {
         ++first;
     }
-    reject(segment, rejection_at(at(first)), configuration_of(at(first)));
+    reject(segment, rejection_at(at(first)), configuration_of(at(first)), counts);
     return false;
 }
 
 void PlannedFlights::fly(std::span<FlightJob> jobs) {
     statistics_.states_checked += nominal_->fly(jobs);
     for (const FlightJob& job : jobs) {
-        count(job);
+        count(job, statistics_);
         if (const FlightLeg* leg = job.rejected_leg()) {
-            reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q));
+            reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q), statistics_);
         }
     }
 }
 
-void PlannedFlights::count(const FlightJob& job) {
+void PlannedFlights::count(const FlightJob& job, FlightStatistics& counts) {
     for (const FlightLeg& leg : job.legs) {
-        statistics_.edges += leg.flight.ticks > 0 ? 1 : 0;
-        statistics_.ticks += static_cast<std::uint64_t>(leg.flight.ticks);
+        counts.edges += leg.flight.ticks > 0 ? 1 : 0;
+        counts.ticks += static_cast<std::uint64_t>(leg.flight.ticks);
     }
+}
+
+void PlannedFlights::count_nominal(const FleetJob& fleet, FlightStatistics& counts) const {
+    const std::uint64_t ticks_before = counts.ticks;
+    count(fleet.jobs.front(), counts);
+    counts.states_checked += counts.ticks - ticks_before;
+    reject(fleet, counts);
 }
 
 std::size_t PlannedFlights::worlds_of_task() const noexcept {
@@ -259,7 +267,7 @@ void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<Fleet
         if (is_judged_here[i] && flown[i].rejection() == Rejection::none && !goal().is_met(flown[i].end())) {
             flown[i].legs.back().flight.rejection = Rejection::goal_missed;
         }
-        count(flown[i]);
+        count(flown[i], statistics_);
         rejected_in_[world_of[i]] += flown[i].rejected_leg() != nullptr ? 1 : 0;
         *owners[i] = std::move(flown[i]);
     }
@@ -273,7 +281,7 @@ void PlannedFlights::fly(std::span<FleetJob> jobs) {
 void PlannedFlights::fly_nominal(std::span<FleetJob> jobs) {
     fly_in(std::array<std::size_t, 1>{0}, jobs);
     for (const FleetJob& fleet : jobs) {
-        reject(fleet);
+        reject(fleet, statistics_);
     }
 }
 
@@ -296,14 +304,14 @@ void PlannedFlights::fly_in_other_worlds(std::span<FleetJob> jobs) {
     fly_in(std::span(order).first(first), jobs);
     fly_in(std::span(order).subspan(first), jobs);
     for (const FleetJob* fleet : accepted) {
-        reject(*fleet);
+        reject(*fleet, statistics_);
     }
 }
 
 /// Counts the rejection of a fleet, if it was rejected.
-void PlannedFlights::reject(const FleetJob& fleet) {
+void PlannedFlights::reject(const FleetJob& fleet, FlightStatistics& counts) const {
     if (const FlightLeg* leg = fleet.rejected_leg()) {
-        reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q));
+        reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q), counts);
     }
 }
 

@@ -50,7 +50,11 @@ class PlannedFlights {
     /// Whether a reference is worth flying: no vehicle on it, level or, under a limit of thrust, tilted as the
     /// reference asks, collides or leaves the bounds, and a flight follows its reference to a few centimetres. Counts
     /// the rejection if it is not.
-    [[nodiscard]] bool is_worth_flying(const ReferenceSegment& segment);
+    [[nodiscard]] bool is_worth_flying(const ReferenceSegment& segment) {
+        return is_worth_flying(segment, statistics_);
+    }
+    /// The same, counted elsewhere. May be called from any thread if can_fly_chains().
+    [[nodiscard]] bool is_worth_flying(const ReferenceSegment& segment, FlightStatistics& counts) const;
 
     /// Flies jobs, and counts ticks and rejections.
     void fly(std::span<FlightJob> jobs);
@@ -75,6 +79,20 @@ class PlannedFlights {
     void fly(std::span<FleetJob> jobs);
     /// Flies jobs in the nominal world alone.
     void fly_nominal(std::span<FleetJob> jobs);
+
+    /// Whether a flight in the nominal world asks nothing but the problem, and is counted by its ticks. Then chains may
+    /// be flown, of which all threads ask.
+    [[nodiscard]] bool can_fly_chains() const noexcept {
+        return other_goal_ == nullptr && other_objective_ == nullptr && task_.flies();
+    }
+    /// Whether the nominal world is all that fleets at the start fly in.
+    [[nodiscard]] bool is_one_world() const noexcept { return task_.worlds == nullptr && joined_.empty(); }
+    /// Flies chains of jobs in the nominal world to their ends. Counts nothing. @pre can_fly_chains()
+    void fly(std::span<FlightChain* const> chains) { nominal_->fly(chains); }
+    /// Counts a job that a chain has flown in the nominal world, as fly_nominal() does.
+    void count_nominal(const FleetJob& fleet, FlightStatistics& counts) const;
+    /// Adds what was counted elsewhere.
+    void add(const FlightStatistics& counts) { statistics_ += counts; }
     /// Flies those jobs in all other worlds that were accepted in the nominal one: first in the worlds that have
     /// rejected most flights so far, as many as fill the lanes, then in the rest.
     void fly_in_other_worlds(std::span<FleetJob> jobs);
@@ -108,19 +126,22 @@ class PlannedFlights {
     [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
     /// Forgets counterexamples and begins to count anew.
     void forget();
-    void count_rejection(const std::string& cause);
+    void count_rejection(const std::string& cause) { count_rejection(cause, statistics_); }
+    static void count_rejection(const std::string& cause, FlightStatistics& counts);
     /// An interrupted flight is none.
-    void count_rejection(Rejection rejection);
+    void count_rejection(Rejection rejection) { count_rejection(rejection, statistics_); }
+    static void count_rejection(Rejection rejection, FlightStatistics& counts);
 
  private:
     [[nodiscard]] bool leads_to_goal(const ReferenceSegment& segment) const;
     [[nodiscard]] std::size_t worlds_of_task() const noexcept;
     [[nodiscard]] const FlownWorld* world(std::size_t number) const;
     void fly_in(std::span<const std::size_t> worlds, std::span<FleetJob> jobs);
-    void reject(const FleetJob& fleet);
-    void count(const FlightJob& job);
+    void reject(const FleetJob& fleet, FlightStatistics& counts) const;
+    static void count(const FlightJob& job, FlightStatistics& counts);
     /// Counts a rejection at a place of a segment.
-    void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at);
+    void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at,
+                FlightStatistics& counts) const;
 
     const SearchTask& task_;
     ProblemGoal goal_;

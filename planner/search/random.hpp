@@ -22,6 +22,9 @@ class Random {
     /// True with this probability.
     bool chance(double probability) { return uniform(0, 1) < probability; }
 
+    /// Whether both give the same numbers from now on.
+    friend bool operator==(const Random& a, const Random& b) { return a.engine_ == b.engine_; }
+
  private:
     std::mt19937_64 engine_;
 };

@@ -194,39 +194,47 @@ std::optional<TreeGrowth::Growth> TreeGrowth::sampled() {
     return growth;
 }
 
-void TreeGrowth::choose_parents(std::vector<Growth>& batch) {
-    for (;;) {
-        std::vector<FlightTree::Edge> edges;
-        std::vector<Growth*> growths;
-        for (Growth& growth : batch) {
-            if (growth.next_parent == growth.parents.size()) {
-                continue;
-            }
-            const Growth::Parent& parent = growth.parents[growth.next_parent];
-            // Until there is a plan any way on will do.
-            if (growth.best && (parent.estimate >= growth.best->cost || !has_plan())) {
-                growth.next_parent = growth.parents.size();
-                continue;
-            }
-            ReferencePoint to = growth.to;
-            const Configuration seen = space_.seen_from(parent.node->configuration, configuration_of(to));
-            std::copy(seen.coordinate.begin(), seen.coordinate.end(), to.position);
-            edges.push_back({parent.node, to});
-            growths.push_back(&growth);
+/// The parents of one sample, tried in the order of their estimates until none can be cheaper.
+class TreeGrowth::ParentChoice final : public FlightTree::EdgeChain {
+ public:
+    ParentChoice(const TreeGrowth& tree, Growth& growth) : tree_(tree), growth_(growth) {}
+
+    std::optional<FlightTree::Edge> next() override {
+        if (growth_.next_parent == growth_.parents.size()) {
+            return std::nullopt;
         }
-        if (edges.empty()) {
-            return;
+        const Growth::Parent& parent = growth_.parents[growth_.next_parent];
+        // Until there is a plan any way on will do.
+        if (growth_.best && (parent.estimate >= growth_.best->cost || !tree_.has_plan())) {
+            growth_.next_parent = growth_.parents.size();
+            return std::nullopt;
         }
-        const auto flights = tree_.flown(edges);
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            Growth& growth = *growths[i];
-            if (flights[i] && (!growth.best || flights[i]->cost < growth.best->cost)) {
-                growth.best = flights[i];
-                growth.best_parent = growth.parents[growth.next_parent].node;
-            }
-            ++growth.next_parent;
-        }
+        ReferencePoint to = growth_.to;
+        const Configuration seen = tree_.space_.seen_from(parent.node->configuration, configuration_of(to));
+        std::copy(seen.coordinate.begin(), seen.coordinate.end(), to.position);
+        return FlightTree::Edge{parent.node, to};
     }
+
+    void note(std::optional<FlightTree::Flown> flight) override {
+        if (flight && (!growth_.best || flight->cost < growth_.best->cost)) {
+            growth_.best = std::move(flight);
+            growth_.best_parent = growth_.parents[growth_.next_parent].node;
+        }
+        ++growth_.next_parent;
+    }
+
+ private:
+    const TreeGrowth& tree_;
+    Growth& growth_;
+};
+
+void TreeGrowth::choose_parents(std::vector<Growth>& batch) {
+    std::deque<ParentChoice> choices;
+    std::vector<FlightTree::EdgeChain*> chains;
+    for (Growth& growth : batch) {
+        chains.push_back(&choices.emplace_back(*this, growth));
+    }
+    tree_.fly(chains);
 }
 
 /// One node per sample, nullptr for those that became none.

@@ -61,6 +61,8 @@ class TreeGrowth {
         FlightNode* best_parent = nullptr;
     };
 
+    class ParentChoice;
+
     [[nodiscard]] std::optional<ReferencePoint> aim();
     [[nodiscard]] std::optional<ReferencePoint> point_of_passage();
     [[nodiscard]] std::optional<Configuration> target();

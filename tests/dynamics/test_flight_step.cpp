@@ -340,6 +340,45 @@ TEST_CASE("The step converges with the fourth order") {
     CHECK(std::log2(error(80) / error(160)) == Approx(4).margin(0.25));
 }
 
+TEST_CASE("Rotors are alike while they give the same thrust and have the same command") {
+    const double thrust_n[] = {3, 3, 4, 3, 4, 3};
+    const double command_n[] = {5, 5, 5, 6, 5, 5};
+    const auto alike = dynamics::alike_rotors(6, thrust_n, command_n);
+    const int expected[] = {0, 0, 2, 3, 2, 0};
+    CHECK(std::equal(expected, expected + 6, alike.as));
+    const double none[] = {std::nan(""), std::nan("")};
+    CHECK(dynamics::alike_rotors(2, none, command_n).as[1] == 1);
+}
+
+TEST_CASE("A rotor's thrust and power do not depend on whether another one is alike") {
+    Robot robot = test_robot();
+    robot.rotors.time_constant_s = 0.02;
+    const PlantModel model = plant_of(robot);
+    State state = state_of({0.2, 0.5, 0.1, 0.4}, {0.3, 0.1, -0.5, 1});
+    Command command = even_command(model, 50, 0);
+    const double thrust_n[] = {11, 11, 12, 12};
+    const double command_n[] = {13, 13, 10.5, 10.5};
+    std::copy(thrust_n, thrust_n + 4, state.thrust_n);
+    std::copy(command_n, command_n + 4, command.thrust_n);
+    const auto stepped = [&] { return dynamics::flight_step(model, state, command, 0.01, FreeAir{}); };
+    const State alike = stepped();
+    CHECK(alike.thrust_n[0] == alike.thrust_n[1]);
+    CHECK(alike.thrust_n[2] == alike.thrust_n[3]);
+    // The same rotors in another order, and with other partners.
+    std::swap(state.thrust_n[1], state.thrust_n[2]);
+    std::swap(command.thrust_n[1], command.thrust_n[2]);
+    const State crossed = stepped();
+    CHECK(crossed.thrust_n[0] == alike.thrust_n[0]);
+    CHECK(crossed.thrust_n[1] == alike.thrust_n[2]);
+    CHECK(crossed.energy_j == Approx(alike.energy_j).epsilon(1e-14));
+    state.thrust_n[2] = 20;
+    const State alone = stepped();
+    CHECK(alone.thrust_n[0] == alike.thrust_n[0]);
+    CHECK(alone.thrust_n[3] == alike.thrust_n[3]);
+    CHECK(alone.thrust_n[2] != alike.thrust_n[0]);
+    CHECK(alone.energy_j > alike.energy_j);
+}
+
 TEST_CASE("A step is a pure function and leaves what it does not know alone") {
     const PlantModel model = plant_of(test_robot());
     State state = state_of({0.2, 0.5, 0.1, 0.4}, {0.3, 0.1, -0.5, 1});

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <deque>
 #include <vector>
 
 #include "../support/flight_fixture.hpp"
@@ -50,7 +51,83 @@ bool same_bytes(const FlightState& a, const FlightState& b) {
     return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
 }
 
+/// Edges from one node after the other to the same place, until one of them gets there.
+class AnyWay final : public planning::FlightTree::EdgeChain {
+ public:
+    AnyWay(std::vector<FlightNode*> nodes, const planning::SearchTask& task, const Configuration& to)
+        : nodes_(std::move(nodes)), task_(task), to_(to) {}
+
+    std::optional<planning::FlightTree::Edge> next() override {
+        if (found || tries == nodes_.size()) {
+            return std::nullopt;
+        }
+        const FlightNode* const from = nodes_[tries++];
+        return planning::FlightTree::Edge{from, at_rest(task_.space.seen_from(from->configuration, to_))};
+    }
+    void note(std::optional<planning::FlightTree::Flown> flight) override { found = std::move(flight); }
+
+    std::optional<planning::FlightTree::Flown> found;
+    std::size_t tries = 0;
+
+ private:
+    std::vector<FlightNode*> nodes_;
+    const planning::SearchTask& task_;
+    Configuration to_;
+};
+
 }  // namespace
+
+TEST_CASE("chains of edges come to the same, and to the same counts, whether they wait for one another or not") {
+    Fixture side_by_side;
+    Fixture in_rounds;
+    // An objective that is not the flights' own, although the same, is asked by one thread only.
+    const planning::ProblemObjective objective(in_rounds.task);
+    in_rounds.flights.pay_by(&objective);
+    REQUIRE(side_by_side.flights.can_fly_chains());
+    REQUIRE(!in_rounds.flights.can_fly_chains());
+    std::size_t least_tries = 100, most_tries = 0;
+    for (int batch = 0; batch < 6; ++batch) {
+        std::vector<std::deque<AnyWay>> both(2);
+        for (Fixture* f : {&side_by_side, &in_rounds}) {
+            planning::Random random(static_cast<std::uint64_t>(batch) + 5);
+            std::deque<AnyWay>& ways = both[f == &side_by_side ? 0 : 1];
+            std::vector<planning::FlightTree::EdgeChain*> chains;
+            for (int i = 0; i < 20; ++i) {
+                const Configuration to = i % 4 == 0 ? *f->flights.goal().sample(random) : f->task.space.sample(random);
+                chains.push_back(&ways.emplace_back(f->tree.nearest(to, 6), f->task, to));
+            }
+            f->tree.fly(chains);
+        }
+        for (std::size_t i = 0; i < both[0].size(); ++i) {
+            CAPTURE(batch, i);
+            const AnyWay& a = both[0][i];
+            const AnyWay& b = both[1][i];
+            REQUIRE(a.tries == b.tries);
+            REQUIRE(a.found.has_value() == b.found.has_value());
+            least_tries = std::min(least_tries, a.tries);
+            most_tries = std::max(most_tries, a.tries);
+            if (a.found) {
+                REQUIRE(a.found->cost == b.found->cost);
+                REQUIRE(same_bytes(a.found->fleet.front(), b.found->fleet.front()));
+                side_by_side.tree.add(side_by_side.tree.root(), *a.found);
+                in_rounds.tree.add(in_rounds.tree.root(), *b.found);
+            }
+        }
+        const planning::FlightStatistics& a = side_by_side.flights.statistics();
+        const planning::FlightStatistics& b = in_rounds.flights.statistics();
+        CHECK(a.edges == b.edges);
+        CHECK(a.ticks == b.ticks);
+        CHECK(a.states_checked == b.states_checked);
+        CHECK(a.rejected == b.rejected);
+        REQUIRE(a.obstruction.has_value() == b.obstruction.has_value());
+        if (a.obstruction) {
+            CHECK(a.obstruction->at == b.obstruction->at);
+            CHECK(a.obstruction->cause == b.obstruction->cause);
+        }
+    }
+    CHECK(least_tries == 1);
+    CHECK(most_tries > 2);  // or no chain had to go on
+}
 
 TEST_CASE("re-flying from the start reproduces every node of a random tree bit for bit, after rewirings too") {
     Fixture f;

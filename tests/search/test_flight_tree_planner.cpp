@@ -191,7 +191,7 @@ TEST_CASE("a solution is handed to the problem definition with its cost, every m
 
 TEST_CASE("a search that is over before it found a plan says how near it came") {
     AsPlanner search(with_wall());
-    REQUIRE(search.solve(60) == ompl::base::PlannerStatus::APPROXIMATE_SOLUTION);
+    REQUIRE(search.solve(6) == ompl::base::PlannerStatus::APPROXIMATE_SOLUTION);
     CHECK_FALSE(search.ompl.definition->hasExactSolution());
     CHECK(search.ompl.definition->hasApproximateSolution());
     CHECK(search.ompl.definition->getSolutionDifference() == search.planner.growth().nearest_distance_m());
