@@ -5,7 +5,7 @@
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
-./dev build --target bench_micro >&2
+./dev build --target bench_micro bench_tick_operations >&2
 # A peer may have the same instructions: where the processor has AVX2 the ODESolver is compiled for it as well.
 peers=(true)
 if grep -qw avx2 /proc/cpuinfo; then
@@ -17,12 +17,13 @@ fi
 options=(--benchmark_repetitions=7 --benchmark_enable_random_interleaving=true --benchmark_report_aggregates_only=true --benchmark_format=csv "$@")
 commit=$(bench/source_commit.sh)
 processor=$(sed -n 's/^model name[^:]*: *//p' /proc/cpuinfo | head -n 1)
+operations=$(build/bench/bench_tick_operations problems/bridge_inspection.yaml | tr '\n' ';')
 mkdir -p bench/results
 {
-    build/bench/bench_micro --benchmark_filter='tick_with|batch|search|ode|mujoco|map_look_up' "${options[@]}"
+    build/bench/bench_micro --benchmark_filter='tick_with|batch|search|ode|mujoco|map_look_up|peak' "${options[@]}"
     "${peers[@]}" "${options[@]}" | sed 's#/\([a-z]*_[a-z]*\)_#/\1_avx2_#'
 } |
-    awk -F, -v commit="$commit" -v processor="$processor" '
+    awk -F, -v commit="$commit" -v processor="$processor" -v operations="$operations" '
         function rate(name) { return name in items ? items[name] * 1e-6 : 0 }
         # The rate of the slowest of a group.
         function slowest(group, i, found) {
@@ -42,6 +43,17 @@ mkdir -p bench/results
             if (rate("batch/" variant "_avx512") > 0) { return "batch/" variant "_avx512" }
             if (rate("batch/" variant "_avx2") > 0) { return "batch/" variant "_avx2" }
             return "batch/" variant "_baseline"
+        }
+        # How near the ticks of a kind come to the peak of their instructions.
+        function share(kind, variant, set, line, i, n, counts) {
+            n = split(operations, line, ";")
+            for (i = 1; i <= n; ++i) {
+                split(line[i], counts, " ")
+                if (counts[1] == kind && rate("batch/" variant "_" set) > 0 && rate("peak/" set) > 0) {
+                    printf "| %s | %s | %d | %d | %d | %d | %.0f %% |\n", kind, set, counts[2], counts[3], counts[4], counts[5],
+                           100 * (counts[2] + counts[3] + counts[4]) * rate("batch/" variant "_" set) / rate("peak/" set)
+                }
+            }
         }
         { gsub(/"/, ""); gsub(/\/(repeats:[0-9]+|real_time)/, "") }
         /_median,/ { sub(/_median/, "", $1); items[$1] = $7; names[++n] = $1 }
@@ -69,7 +81,17 @@ mkdir -p bench/results
             bound("two threads over one, 512 edges at a time, at least 1.8", ratio(rate("batch/aerodynamics_aware_two_threads"), rate(ada)), 1.8, " times")
             bound("searches limited to 0.1 s, the slowest algorithm, at least 1 per second", slowest("limited_search/"), 1, " per second")
             if (rate("search/two_at_once") > 0) { printf "\nTwo searches at once, of one thread each, fly %.2f times the edges of one: what two of these processors give.\n", ratio(rate("search/two_at_once"), rate("search/one_thread")) }
-            printf "Batched ticks with the map run at %.2f of the speed of those without.\n", ratio(rate(ada), rate(best("dynamics_aware")))
+            print "\nHow near batched ticks come to what the processor gives: operations of a tick (`bench/tick_operations`), and the share of the peak that sums, products and"
+            print "quotients (divisions and square roots, each as one) make. The peak is `peak/`: sums and products of one thread without contraction. Choices are comparisons, selections,"
+            print "minima and maxima; they and looking up the map take the same units, and a division takes as long as eight sums and more.\n"
+            print "| tick | instructions | sums | products | quotients | choices | share of the peak |\n| --- | --- | --: | --: | --: | --: | --: |"
+            share("nominal", "aerodynamics_aware", "avx512")
+            share("in_world", "in_worlds", "avx512")
+            share("nominal", "aerodynamics_aware", "avx2")
+            share("in_world", "in_worlds", "avx2")
+            share("nominal", "aerodynamics_aware", "baseline")
+            share("in_world", "in_worlds", "baseline")
+            printf "\nBatched ticks with the map run at %.2f of the speed of those without.\n", ratio(rate(ada), rate(best("dynamics_aware")))
         }' >bench/results/speed.md.new
 mv bench/results/speed.md.new bench/results/speed.md
 bench/bars.sh --write
