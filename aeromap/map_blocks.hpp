@@ -11,11 +11,13 @@
 #include <span>
 #include <vector>
 
-#include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/block_store.hpp"
 #include "downwash/aeromap/layer_grid.hpp"
+#include "downwash/aeromap/map_layer.hpp"
 #include "downwash/aeromap/map_view.hpp"
+#include "downwash/base/bounds.hpp"
 #include "downwash/base/stop_condition.hpp"
+#include "downwash/scene/plane_of_motion.hpp"
 
 namespace downwash {
 

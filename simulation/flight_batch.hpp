@@ -23,19 +23,6 @@ enum class Instructions : std::uint8_t {
     return known_instructions().back();
 }
 
-/// Jobs that follow one another, of which each is known only when the one before has ended.
-class DOWNWASH_EXPORT FlightChain {
- public:
-    FlightChain() = default;
-    virtual ~FlightChain() = default;
-    FlightChain(const FlightChain&) = delete;
-    FlightChain& operator=(const FlightChain&) = delete;
-
-    /// The job to fly now, in the nominal world; nullptr: the chain has ended. Asked at first, and whenever a job has
-    /// ended. All threads of a pool may ask, one at a time for one chain and several at once for several chains.
-    [[nodiscard]] virtual FlightJob* next() = 0;
-};
-
 /// A thread pool that flies jobs side by side, in the lanes of wide registers. Every job ends exactly as if fly() flew
 /// its legs one after the other, whatever the instructions and the number of threads. A lane whose flight ends takes
 /// the next job.

@@ -37,4 +37,17 @@ struct FlightJob {
     [[nodiscard]] const FlightState& end() const noexcept { return legs.back().end; }
 };
 
+/// Jobs that follow one another, of which each is known only when the one before has ended.
+class DOWNWASH_EXPORT FlightChain {
+ public:
+    FlightChain() = default;
+    virtual ~FlightChain() = default;
+    FlightChain(const FlightChain&) = delete;
+    FlightChain& operator=(const FlightChain&) = delete;
+
+    /// The job to fly now, in the nominal world; nullptr: the chain has ended. Asked at first, and whenever a job has
+    /// ended. All threads of a pool may ask, one at a time for one chain and several at once for several chains.
+    [[nodiscard]] virtual FlightJob* next() = 0;
+};
+
 }  // namespace downwash

@@ -9,7 +9,6 @@
 
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/execution.hpp"
-#include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/flight_job.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
 #include "downwash/simulation/rule_checks.hpp"

@@ -96,7 +96,7 @@ void count(const Problem& problem, const FlightModel& model, const AeroMap& map,
 
     const auto fly = [&](std::string_view kind, const auto& step) {
         MapEffect<Counted> field(maps);
-        Rules checks{rule_limits(rules, model.robot().arm), motion_reach(model), {}, false};
+        Rules checks{rule_limits(rules, model.robot().arm), {0.5, 0.2, 1}, {}, false};
         State<Counted> state = counted<State>(start);
         lane::operations = {};
         for (int n = 0; n < counted_ticks; ++n) {

@@ -108,6 +108,7 @@ TEST_CASE("Two bodies and a joint accelerate in the wash like the generalised co
     struct Washed : Air {
         Washed(const dynamics::PlanePoint<double>& wind, const Slipstreams& of) : Air(wind), all(of) {}
         const Slipstreams& all;
+        static constexpr bool has_wash = true;
         [[nodiscard]] const Slipstreams& slipstreams() const { return all; }
         [[nodiscard]] double wash_scale() const { return 0.8; }
     };
