@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs what is missing of the study of awareness and writes bench/results/awareness.md. About three hours on two processors;
+# Runs what is missing of the study of awareness and writes bench/results/awareness.md. About seven hours on two processors;
 # close everything else first. It can be stopped and started again. Options go to `downwash study awareness`, for example
 # --share 1/2, or --line certified-10s --seeds 50.
 set -euo pipefail
