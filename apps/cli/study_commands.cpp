@@ -34,8 +34,9 @@ void add_study_awareness(Command study, Action& action, ExitCode (*run)(const St
                     "controllers, on shipped problems and on others that engineers have. Continues with the results "
                     "that are there",
                     run);
-    command.add_option("--line NAME...", given.lines,
-                       "lines of the table of cells; default: those of docs/awareness.md, seven hours on two processors");
+    command.add_option(
+        "--line NAME...", given.lines,
+        "lines of the table of cells; default: those of docs/awareness.md, seven hours on two processors");
     command.add_option("--only NAME...", given.problems, "names of problems of the study; default: all");
     command
         .add_option("--seeds N", given.seeds, "searches of each setup on each problem; default: as the lines have it")

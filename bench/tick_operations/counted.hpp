@@ -20,42 +20,39 @@ struct Operations {
 inline Operations operations;
 
 /// A double whose operations are counted.
-class Counted {
- public:
-    Counted() = default;
-    explicit Counted(double value) : value_(value) {}
-    [[nodiscard]] double value() const noexcept { return value_; }
+struct Counted {
+    double value;
 
- private:
-    double value_;
+    Counted() = default;
+    explicit Counted(double of) : value(of) {}
 };
 
 inline Counted operator+(Counted a, Counted b) {
     ++operations.sums;
-    return Counted(a.value() + b.value());
+    return Counted(a.value + b.value);
 }
 inline Counted operator-(Counted a, Counted b) {
     ++operations.sums;
-    return Counted(a.value() - b.value());
+    return Counted(a.value - b.value);
 }
 inline Counted operator*(Counted a, Counted b) {
     ++operations.products;
-    return Counted(a.value() * b.value());
+    return Counted(a.value * b.value);
 }
 inline Counted operator/(Counted a, Counted b) {
     ++operations.quotients;
-    return Counted(a.value() / b.value());
+    return Counted(a.value / b.value);
 }
 inline Counted operator-(Counted a) {
-    return Counted(-a.value());
+    return Counted(-a.value);
 }
 inline bool operator<(Counted a, Counted b) {
     ++operations.others;
-    return a.value() < b.value();
+    return a.value < b.value;
 }
 inline bool operator<=(Counted a, Counted b) {
     ++operations.others;
-    return a.value() <= b.value();
+    return a.value <= b.value;
 }
 inline bool operator>(Counted a, Counted b) {
     return b < a;
@@ -69,21 +66,21 @@ inline Counted select(bool condition, Counted yes, Counted no) {
 }
 inline Counted sqrt(Counted x) {
     ++operations.quotients;
-    return Counted(std::sqrt(x.value()));
+    return Counted(std::sqrt(x.value));
 }
 inline Counted abs(Counted x) {
-    return Counted(std::fabs(x.value()));
+    return Counted(std::fabs(x.value));
 }
 inline Counted min(Counted a, Counted b) {
     ++operations.others;
-    return b.value() < a.value() ? b : a;
+    return b.value < a.value ? b : a;
 }
 inline Counted max(Counted a, Counted b) {
     ++operations.others;
-    return a.value() < b.value() ? b : a;
+    return a.value < b.value ? b : a;
 }
 inline double number_in(Counted x, int /*lane*/) {
-    return x.value();
+    return x.value;
 }
 inline void set_number(Counted& x, int /*lane*/, double number) {
     x = Counted(number);

@@ -90,7 +90,7 @@ template <class Law>
 void count(const Problem& problem, const FlightModel& model, const AeroMap& map, const Law& law) {
     const TickModel& tick = model.tick();
     const RotorMaps maps = rotor_maps(model, map);
-    const FlightState start = model.state_at(level_at(problem.start));
+    const FlightState start = model.state_at(level_at(problem.start.at));
     FlightRules rules;
     rules.bounds = problem.bounds;
 
@@ -102,7 +102,7 @@ void count(const Problem& problem, const FlightModel& model, const AeroMap& map,
         for (int n = 0; n < counted_ticks; ++n) {
             controllers::Actuation<Counted> given;
             const Counted number(n);
-            const auto reference = reference_at(number, problem.start);
+            const auto reference = reference_at(number, problem.start.at);
             State<Counted> next;
             const dynamics::Attitude<Counted> attitude = step(state, reference, field, given, next);
             checks.check(tick.plant, state, next, reference, given.saturation, attitude, field);

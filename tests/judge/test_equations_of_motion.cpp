@@ -38,6 +38,15 @@ struct Air : FreeAir {
     [[nodiscard]] dynamics::PlanePoint<double> wind() const { return air; }
 };
 
+/// The same with slipstreams, slower than those of the model.
+struct Washed : Air {
+    Washed(const dynamics::PlanePoint<double>& wind, const Slipstreams& of) : Air(wind), all(of) {}
+    const Slipstreams& all;
+    static constexpr bool has_wash = true;
+    [[nodiscard]] const Slipstreams& slipstreams() const { return all; }
+    [[nodiscard]] double wash_scale() const { return 0.8; }
+};
+
 const World calm{};
 
 }  // namespace
@@ -105,13 +114,6 @@ TEST_CASE("Two bodies and a joint accelerate in the wash like the generalised co
     const FlownWorld flown = make_world(robot, world);
     PlantModel model = plant_of(robot);
     static_cast<PlantNumbers<double>&>(model) = flown.numbers.plant;
-    struct Washed : Air {
-        Washed(const dynamics::PlanePoint<double>& wind, const Slipstreams& of) : Air(wind), all(of) {}
-        const Slipstreams& all;
-        static constexpr bool has_wash = true;
-        [[nodiscard]] const Slipstreams& slipstreams() const { return all; }
-        [[nodiscard]] double wash_scale() const { return 0.8; }
-    };
     const Slipstreams slipstreams = slipstreams_of(robot.arm, robot.rotors);
     Random random(22);
     double worst[4] = {}, largest[4] = {};
