@@ -127,6 +127,7 @@ void trim(const fs::path& folder) {
         }
     }
     std::vector<CachedMap> maps;
+    maps.reserve(by_key.size());
     for (auto& [key, map] : by_key) {
         maps.push_back(std::move(map));
     }

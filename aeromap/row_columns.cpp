@@ -154,7 +154,7 @@ std::shared_ptr<const RowColumn> RowColumns::at(double u_m, double v_m) const {
             return found->second;
         }
         if (const auto found = shard.early.find(square); found != shard.early.end()) {
-            const std::shared_ptr<const RowColumn> column = found->second;
+            std::shared_ptr<const RowColumn> column = found->second;
             const std::size_t bytes = column->bytes();
             shard.early.erase(found);
             shard.early_bytes -= std::min(bytes, shard.early_bytes);
@@ -169,7 +169,7 @@ std::shared_ptr<const RowColumn> RowColumns::at(double u_m, double v_m) const {
         scene_, radius_m_, RowWindow{{low_u, low_u + square_m()}, {low_v, low_v + square_m()}});
     const std::lock_guard lock(shard.mutex);
     const auto [place, is_new] = shard.late.emplace(square, column);
-    const std::shared_ptr<const RowColumn> kept = place->second;  // perhaps another thread was sooner
+    std::shared_ptr<const RowColumn> kept = place->second;  // perhaps another thread was sooner
     if (is_new) {
         add_bytes(shard, kept->bytes());
     }

@@ -254,6 +254,7 @@ void query_problem(const QueryArguments& given) {
     const std::vector<std::array<double, 3>> points_m = all_points(given);
     effects.fill_around(points_m);
     std::vector<PointEffect> points;
+    points.reserve(points_m.size());
     for (const auto& point_m : points_m) {
         points.push_back(effects.at(point_m));
     }

@@ -340,17 +340,17 @@ class PlanRefiner::ChangeFlight final : public FlightChain {
         : refiner_(refiner), base_(base), change_(change), saved_(saved), job_(job) {}
 
     FlightJob* next() override {
-        ++flown_;
-        if (flown_ == 0) {
+        if (asked_++ == 0) {
             job_ = refiner_.job_for({base_.fleets[change_.first].front()}, change_, change_.first, change_.last);
             return &job_.jobs.front();
         }
-        refiner_.flights_.count_nominal(flown_ == 1 ? job_ : rest_, counts[flown_ - 1]);
-        if (flown_ == 1 && !is_whole(change_, job_) && refiner_.costs_less(base_, change_, job_, saved_)) {
+        const std::size_t flown = asked_ - 2;  // 0: its own segments, 1: the rest
+        refiner_.flights_.count_nominal(flown == 0 ? job_ : rest_, counts[flown]);
+        if (flown == 0 && !is_whole(change_, job_) && refiner_.costs_less(base_, change_, job_, saved_)) {
             rest_ = refiner_.job_for(job_.end(), change_, change_.last + 1, change_.ticks.size() - 1);
             return &rest_.jobs.front();
         }
-        if (flown_ == 2) {
+        if (flown == 1) {
             std::ranges::copy(rest_.legs(), std::back_inserter(job_.jobs.front().legs));
         }
         return nullptr;
@@ -365,7 +365,7 @@ class PlanRefiner::ChangeFlight final : public FlightChain {
     double saved_;
     FleetJob& job_;
     FleetJob rest_;
-    int flown_ = -1;  ///< jobs
+    std::size_t asked_ = 0;  ///< how often for a job
 };
 
 /// Flies changes in the nominal world.

@@ -231,6 +231,7 @@ class TreeGrowth::ParentChoice final : public FlightTree::EdgeChain {
 void TreeGrowth::choose_parents(std::vector<Growth>& batch) {
     std::deque<ParentChoice> choices;
     std::vector<FlightTree::EdgeChain*> chains;
+    chains.reserve(batch.size());
     for (Growth& growth : batch) {
         chains.push_back(&choices.emplace_back(*this, growth));
     }
