@@ -9,12 +9,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A few iterations of the aerodynamics-aware search, and what it wrote.
+/// A few iterations of the aerodynamics-aware search, and what it wrote. On one thread: which blocks of a map several
+/// threads fill ahead depends on who waits for whom.
 std::string trajectory_of(const Workspace& work, const char* options = "", const Environment& environment = {}) {
     fs::remove_all(work.in_run("out"));
-    const Result result = work.run_in(environment, "",
-                                      words("solve", problem_file("bridge_inspection"),
-                                            "--variant mp-arm-ada --seed 3 --max-iterations 25 --out out", options));
+    const Result result =
+        work.run_in(environment, "",
+                    words("solve", problem_file("bridge_inspection"),
+                          "--variant mp-arm-ada --seed 3 --max-iterations 25 --threads 1 --out out", options));
     CHECK(result.code <= 1);
     return work.text("out/trajectory.csv");
 }
