@@ -127,8 +127,8 @@ def main():
     commit = subprocess.run(["bench/source_commit.sh"], cwd=TREE, capture_output=True, text=True, check=True).stdout
     print("# Large scenes\n")
     print(f"Commit {commit.strip()}, {processor()}, 2 threads. Made by `bench/scene_growth.py`.\n")
-    print("Few iterations do not mean a slow search: the first plan is flown with direct aerodynamics before the search\n"
-          "goes on, and where hundreds of small boxes or triangles lie above a rotor, that flight takes most of the time.\n")
+    print("The first plan comes from a bare start, without a cached map: the map fills while the search runs. Refinement and the\n"
+          "flights that check plans take their share of the ten seconds, so iterations differ from row to row.\n")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         table("Boxes", "obstacles")
