@@ -112,7 +112,8 @@ const Edit edits[] = {
      "number} or {range: [low, high]} in deg from -30 to 30"},
     // Too slow for the delay that the tick can bear: said once, also where a problem takes it over.
     {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {vehicle: {delay_s: {range: [0, 0.2]}}}",
-     "19:34: uncertainty.vehicle.delay_s reaches from 0 to 0.2 s: expected 0 to 3 control ticks, 0.03 s"},
+     "19:34: uncertainty.vehicle.delay_s reaches from 0 to 0.2 s: expected 0 to 3 control ticks, 0.03 s; a "
+     "controller.rate_hz of 15 or less would do, or a narrower {range: [low, high]} of delays"},
     {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {vehicle: {rotor_time_constant_s: {sd: 0.01}}}",
      "19:48: uncertainty.vehicle.rotor_time_constant_s is uncertain for rotors without a lag: give the robot its "
      "rotors.time_constant_s first"},
