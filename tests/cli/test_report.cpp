@@ -199,3 +199,5 @@ TEST_CASE("What cannot be reported or exported is rejected with a remedy") {
     write_file(work.in_run("flown/trajectory.csv"), "t_s,x_m\n1,2\n");
     check_rejected(work.run("export flown --format vtp"), "trajectory.csv:1: there is no column 'ref_x_m'");
 }
+          {"export flown --format qgc --origin 47 8 400 --end rest", "expected hover, land or return"},
+          {"export flown --format glb --end land", "--end: the format glb is no mission"},
