@@ -164,6 +164,13 @@ void TreeReader<Model>::report_unknown(Group& group, const std::string& name, co
                                  : KeyRemedy{"it belongs in the problem file, as " + elsewhere, {}};
     const std::string where = shown(group.key);
     report(mark, "unknown key '" + excerpt(name) + "' " + (where.empty() ? "at the top" : "in " + where) + ": " +
+    if (name == "<<") {
+        report(mark,
+               "merge keys (<<) are not read: expected the keys themselves; an alias (*name) may stand for a whole "
+               "value");
+        group.meant.insert(group.meant.end(), valid.begin(), valid.end());  // it may bring any of them
+        return;
+    }
                      remedy.text);
     group.meant.insert(group.meant.end(), remedy.meant.begin(), remedy.meant.end());
 }
