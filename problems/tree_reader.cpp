@@ -29,6 +29,11 @@ std::string key_outside_robot(const std::string& path, std::string_view name) {
     return joined(path == robot ? "" : path.substr(robot.size() + 1), name);
 }
 
+/// What a group may be that nobody has thought about yet: a law whose gains all have defaults.
+std::string to_begin_with(std::string_view path) {
+    return path == "controller" || path == "robot.controller" ? ", to begin with {type: cascaded-pid}" : "";
+}
+
 }  // namespace
 
 template <class Model>
@@ -111,7 +116,8 @@ void TreeReader<Model>::read_keys(Group group) {
             read_parameter(group, *parameter);
         } else if (parameter->required && (!parameter->applies || parameter->applies(model_, group.index)) &&
                    std::count(group.meant.begin(), group.meant.end(), name) == 0) {
-            report(joined(group.key, name), group.mark, "is missing: expected " + expectation(*parameter));
+            report(joined(group.key, name), group.mark,
+                   "is missing: expected " + expectation(*parameter) + to_begin_with(parameter->path));
         }
     }
 }
@@ -158,12 +164,6 @@ void TreeReader<Model>::report_unknown(Group& group, const std::string& name, co
     for (const Parameter<Model>* child : table_.children(group.path)) {
         valid.push_back(last_name(child->path));
     }
-    const std::string elsewhere = key_outside_robot(group.path, name);
-    const KeyRemedy remedy = elsewhere.empty() || table_.find(elsewhere) == nullptr
-                                 ? remedy_for_key(name, valid)
-                                 : KeyRemedy{"it belongs in the problem file, as " + elsewhere, {}};
-    const std::string where = shown(group.key);
-    report(mark, "unknown key '" + excerpt(name) + "' " + (where.empty() ? "at the top" : "in " + where) + ": " +
     if (name == "<<") {
         report(mark,
                "merge keys (<<) are not read: expected the keys themselves; an alias (*name) may stand for a whole "
@@ -171,6 +171,12 @@ void TreeReader<Model>::report_unknown(Group& group, const std::string& name, co
         group.meant.insert(group.meant.end(), valid.begin(), valid.end());  // it may bring any of them
         return;
     }
+    const std::string elsewhere = key_outside_robot(group.path, name);
+    const KeyRemedy remedy = elsewhere.empty() || table_.find(elsewhere) == nullptr
+                                 ? remedy_for_key(name, valid)
+                                 : KeyRemedy{"it belongs in the problem file, as " + elsewhere, {}};
+    const std::string where = shown(group.key);
+    report(mark, "unknown key '" + excerpt(name) + "' " + (where.empty() ? "at the top" : "in " + where) + ": " +
                      remedy.text);
     group.meant.insert(group.meant.end(), remedy.meant.begin(), remedy.meant.end());
 }

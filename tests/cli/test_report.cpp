@@ -93,6 +93,12 @@ TEST_CASE("Keys are explained from the table that reads them") {
                    Contains("No key is called") && Contains("planner.safety_margin_m") && Contains("least clearance"));
     }
     check_rejected(work.run("explain safety_margn_m"), "did you mean 'safety_margin_m'?");
+    // A word finds the names that have it within them, too; but not in the middle of another word.
+    CHECK_THAT(work.succeed("explain inertia").out,
+               Contains("robot.arm.inertia_kg_m2") && Contains("robot.multirotor.pitch_inertia_kg_m2"));
+    CHECK_THAT(work.succeed("explain y_m").out,
+               Contains("No key is called 'y_m': ") && Contains("vertical plane") && !Contains("safety_margin_m"));
+    CHECK_THAT(work.succeed("explain goal.end_effector.y_m").out, Contains("environment.plane"));
     check_rejected(work.run("explain boiler"), "`downwash check --schema problem` prints all keys");
 }
 

@@ -38,6 +38,10 @@ const Edit edits[] = {
      "13:37: uncertainty.aero.ceiling_scale has an sd so large that 3 of it leave the range: expected 0 or {sd: "
      "number} "
      "or {range: [low, high]} from -0.9 to 0.9"},
+    {"x_m: 3, z_m: 2.5", "x_m: 3, y_m: 0.5, z_m: 2.5",
+     "14:26: unknown key 'y_m' in goal.end_effector: vehicle and arm move in a vertical plane, in which x_m and z_m "
+     "are "
+     "coordinates; environment.plane (origin_m, heading_deg) places it in the scene"},
     {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {weather: {}}",
      "13:15: unknown key 'weather' in uncertainty: expected aero, vehicle, sensing or wind"},
     {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {vehicle: {delay_s: {range: [0, 0.2]}}}",
