@@ -17,6 +17,7 @@ if(DOWNWASH_HELP)
   install(DIRECTORY ${DOWNWASH_HELP}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
   install(FILES ${DOWNWASH_HELP}/downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${DOWNWASH_HELP}/_downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES ${DOWNWASH_HELP}/downwash.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 set(DOWNWASH_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/downwash)
 install(DIRECTORY problems/ DESTINATION ${DOWNWASH_INSTALL_DATADIR}/problems

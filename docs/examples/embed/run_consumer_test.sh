@@ -87,4 +87,6 @@ bash -c '
     COMP_WORDS=(downwash aeromap pl) COMP_CWORD=2
     _downwash
     [[ ${COMPREPLY[*]} == plot ]]' completes "$prefix/share/bash-completion/completions/downwash"
+grep -qF "complete -c downwash -n 'test (__downwash_command) = \"downwash aeromap\"' -f -a 'plot'" \
+    "$prefix/share/fish/vendor_completions.d/downwash.fish"
 [[ $(head -n 1 "$prefix/share/zsh/site-functions/_downwash") == '#compdef downwash' ]]
