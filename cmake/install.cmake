@@ -49,6 +49,8 @@ foreach(module IN LISTS modules)
 endforeach()
 string(STRIP "${DOWNWASH_PKGCONFIG_LIBS}" DOWNWASH_PKGCONFIG_LIBS)
 
+install(FILES ${DOWNWASH_INCLUDE_DIR}/downwash/standard_library.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/downwash)
+
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/downwash)
 install(EXPORT downwash_targets NAMESPACE downwash:: DESTINATION ${package_dir})
 install(EXPORT downwash_ompl_targets NAMESPACE downwash:: DESTINATION ${package_dir})

@@ -50,6 +50,18 @@ for flags in '' '-march=native'; do
     "$work/embed/embed"
 done
 
+echo "programs whose containers have another layout do not compile, with a reason"
+compiles() {
+    g++ -std=c++20 "$@" -fsyntax-only -I "$prefix/include" "$root/docs/examples/embed/main.cpp" 2>"$work/log"
+}
+for flag in -D_GLIBCXX_DEBUG -D_GLIBCXX_USE_CXX11_ABI=0; do
+    if compiles "$flag" || ! grep -q '#error "Downwash ' "$work/log"; then
+        echo "$flag: expected #error"
+        exit 1
+    fi
+done
+compiles -D_GLIBCXX_ASSERTIONS -D_FORTIFY_SOURCE=2 -O2 -funsigned-char
+
 if command -v pkg-config >/dev/null; then
     echo "the example, built by way of pkg-config"
     read -ra flags < <(PKG_CONFIG_PATH=$prefix/lib/pkgconfig pkg-config --cflags --libs downwash)
