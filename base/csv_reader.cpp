@@ -40,15 +40,15 @@ CsvReader::CsvReader(std::string_view bytes, LineErrors& errors, const Limits& l
     choose_decimal_sign();
 }
 
-std::optional<std::size_t> CsvReader::find(std::string_view name) const {
-    const auto place = [this](auto found) { return static_cast<std::size_t>(found - names_.begin()); };
-    if (const auto found = std::find(names_.begin(), names_.end(), name); found != names_.end()) {
+std::optional<std::size_t> find_column(const std::vector<std::string>& names, std::string_view name) {
+    const auto place = [&names](auto found) { return static_cast<std::size_t>(found - names.begin()); };
+    if (const auto found = std::find(names.begin(), names.end(), name); found != names.end()) {
         return place(found);
     }
     const auto is_meant = [name](const std::string& other) { return is_same_word(name, other); };
-    const auto found = std::find_if(names_.begin(), names_.end(), is_meant);
-    return found != names_.end() && std::none_of(found + 1, names_.end(), is_meant) ? std::optional(place(found))
-                                                                                    : std::nullopt;
+    const auto found = std::find_if(names.begin(), names.end(), is_meant);
+    return found != names.end() && std::none_of(found + 1, names.end(), is_meant) ? std::optional(place(found))
+                                                                                  : std::nullopt;
 }
 
 std::size_t CsvReader::required(std::string_view name, std::string_view expected) {

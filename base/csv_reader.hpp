@@ -14,6 +14,11 @@
 
 namespace downwash {
 
+/// The position of a name among those of columns; if there is none, of the only one that differs in the case of
+/// letters.
+[[nodiscard]] DOWNWASH_EXPORT std::optional<std::size_t> find_column(const std::vector<std::string>& names,
+                                                                     std::string_view name);
+
 /// Reads a table of delimited text row by row: a line with the names of its columns, then rows of as many cells.
 ///
 /// The look of the text says its dialect. Cells are separated by semicolons, tabs, commas or blanks, whichever of
@@ -48,8 +53,7 @@ class DOWNWASH_EXPORT CsvReader {
     [[nodiscard]] std::size_t header_line() const noexcept { return header_line_; }
     /// Where a name begins in its line, from 1.
     [[nodiscard]] std::size_t header_place(std::size_t column) const { return header_places_[column]; }
-    /// The column of that name; if there is none, the only one whose name differs in the case of letters.
-    [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const;
+    [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const { return find_column(names_, name); }
     /// The same. If there is none, adds an error and returns 0. @param expected which columns are
     [[nodiscard]] std::size_t required(std::string_view name, std::string_view expected);
 

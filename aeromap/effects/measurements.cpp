@@ -1,6 +1,5 @@
 #include "downwash/effects/measurements.hpp"
 
-#include <algorithm>
 #include <set>
 #include <utility>
 
@@ -10,8 +9,7 @@
 namespace downwash {
 
 std::optional<std::size_t> Measurements::index(std::string_view column) const {
-    const auto found = std::find(columns.begin(), columns.end(), column);
-    return found == columns.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - columns.begin()));
+    return find_column(columns, column);
 }
 
 std::vector<std::string> Measurements::entries(std::string_view column) const {

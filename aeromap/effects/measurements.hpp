@@ -26,7 +26,7 @@ struct DOWNWASH_EXPORT Measurements {
     std::vector<std::string> columns;  ///< names of `cells`
     std::vector<Measurement> points;   ///< points in the order of the file
 
-    /// The position of a column in `columns`; empty if there is none of that name.
+    /// The position of a column in `columns`, as find_column() finds it; empty if there is none of that name.
     [[nodiscard]] std::optional<std::size_t> index(std::string_view column) const;
     /// The distinct entries of a column, in the order of their first appearance; none without such a column.
     [[nodiscard]] std::vector<std::string> entries(std::string_view column) const;

@@ -36,6 +36,8 @@ TEST_CASE("Measurements of spreadsheets and test stands are those of plain text"
     CHECK(values("z_over_r,thrust_ratio\r\n\"0,5\",\"1,21\"\r\n\"1,0\",\"1,058\"\r\n") == expected);
     CHECK(values("sep=;\r\nz_over_r;thrust_ratio\r\n0,5;1,21\r\n1,0;1,058\r\n") == expected);
     CHECK(values("z_over_r\tthrust_ratio\n0.5\t1.21\n1\t1.058\n") == expected);
+    CHECK(parse_measurements("Z_over_R,Thrust_Ratio,Surface\n1,1.1,ground\n", "m.csv").entries("surface") ==
+          std::vector<std::string>{"ground"});
     CHECK(values("Z_over_R,Thrust_Ratio,\n0.5,1.21,\n1,1.058,\n") == expected);
     CHECK(values(",z_over_r,thrust_ratio\n0,0.5,1.21\n1,1.0,1.058\n") == expected);
 }
