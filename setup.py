@@ -1,5 +1,6 @@
 """Builds the Python package: CMake makes the extension module, with the library inside."""
 
+import importlib.util
 import os
 import pathlib
 import re
@@ -46,6 +47,19 @@ def version() -> str:
     return found[1]
 
 
+def require_wheels() -> None:
+    """Stops where setuptools cannot make wheels: it did not before version 70.1 without the package `wheel`."""
+    if importlib.util.find_spec("setuptools.command.bdist_wheel") or importlib.util.find_spec("wheel"):
+        return
+    raise SystemExit(
+        f"{sys.executable} has no package `wheel`, which setuptools before version 70.1 needs to build this package.\n"
+        "Either let pip fetch what it needs: `pip install .`, without --no-build-isolation and --no-index;\n"
+        "or, without network, use Debian's Python, for which `./dev setup` installs all: `/usr/bin/python3 -m venv "
+        "--system-site-packages my-environment`."
+    )
+
+
+require_wheels()
 BUILD.mkdir(exist_ok=True)
 setup(
     version=version(),

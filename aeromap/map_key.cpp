@@ -105,7 +105,7 @@ void add_grid(Description& description, const FactorGrid& grid) {
     add_axis(description, grid.x());
     add_axis(description, grid.y());
     add_axis(description, grid.z());
-    description.add_all(grid.lateral_offsets_m());
+    description.add_all(grid.lateral_offsets_m()).add_all(grid.edge_slack_m()).add(grid.layer_slack_m());
     add_field(description, *grid.field("factor"));
     if (const std::vector<double>* flyable = grid.field("flyable")) {
         add_field(description.add("flyable"), *flyable);

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "downwash/base/csv_lines.hpp"
+#include "downwash/base/csv_cell.hpp"
 #include "downwash/bench/campaign_report.hpp"
 #include "downwash/bench/campaign_schema.hpp"
 

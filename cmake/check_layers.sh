@@ -103,6 +103,7 @@ awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private
         if (header ~ /^downwash\//) {
             target = header
             sub(/^downwash\//, "", target)
+            if (target == "standard_library.hpp") next # written by cmake/standard_library.cmake
             used = target
             sub(/\/.*/, "", used)
             if (used != module && !everything && !((folder, used) in may))

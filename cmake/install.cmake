@@ -17,6 +17,7 @@ if(DOWNWASH_HELP)
   install(DIRECTORY ${DOWNWASH_HELP}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR})
   install(FILES ${DOWNWASH_HELP}/downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${DOWNWASH_HELP}/_downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
+  install(FILES ${DOWNWASH_HELP}/downwash.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
 endif()
 set(DOWNWASH_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/downwash)
 install(DIRECTORY problems/ DESTINATION ${DOWNWASH_INSTALL_DATADIR}/problems
@@ -47,6 +48,8 @@ foreach(module IN LISTS modules)
   endif()
 endforeach()
 string(STRIP "${DOWNWASH_PKGCONFIG_LIBS}" DOWNWASH_PKGCONFIG_LIBS)
+
+install(FILES ${DOWNWASH_INCLUDE_DIR}/downwash/standard_library.hpp DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/downwash)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/downwash)
 install(EXPORT downwash_targets NAMESPACE downwash:: DESTINATION ${package_dir})

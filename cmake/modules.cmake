@@ -18,6 +18,7 @@ include(cmake/dependencies.cmake)
 # Headers stand beside their sources and are included as <downwash/module/header.hpp>, here as after installation.
 set(DOWNWASH_INCLUDE_DIR ${PROJECT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${DOWNWASH_INCLUDE_DIR}/downwash)
+include(cmake/standard_library.cmake)
 
 add_library(downwash_options INTERFACE)
 target_compile_options(downwash_options INTERFACE

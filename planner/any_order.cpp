@@ -25,7 +25,10 @@ class AnyOrder {
           silent_(silent(options)),
           table_(problem, model, silent_),
           left_(problem.planner),
-          comparison_(table_, [this] { return is_over(); }) {}
+          comparison_(table_, [this] {
+              tell_of_legs();
+              return is_over();
+          }) {}
 
     [[nodiscard]] SearchResult run();
 
@@ -46,6 +49,7 @@ class AnyOrder {
     [[nodiscard]] bool leaves_energy(const PlaceOrder& order);
     [[nodiscard]] SearchBudget share_of_left(double share) const;
     void compare_orders(const SearchBudget& budget);
+    void tell_of_legs();
     [[nodiscard]] VisitOrder described(const PlaceOrder& order) const;
     [[nodiscard]] double cost_when_flown(const Found& way) const { return cost_of(way, problem_.planner.objective); }
     [[nodiscard]] bool attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only);
@@ -65,11 +69,13 @@ class AnyOrder {
     SearchBudget left_;
     OrderComparison comparison_;
     Stopwatch clock_;
-    double spent_at_s_ = 0;       ///< when time was last taken from what is left
-    std::uint64_t attempts_ = 0;  ///< plans that asked for a certificate
-    PlaceOrder failed_;           ///< in which the last search for a flight failed
-    Found best_;                  ///< the best flight so far
-    PlaceOrder best_order_;       ///< in which it visits places; empty without a flight
+    double spent_at_s_ = 0;                                  ///< when time was last taken from what is left
+    double told_at_s_ = 0;                                   ///< when the caller was last told of legs
+    std::uint64_t nodes_before_ = 0, nodes_of_attempt_ = 0;  ///< of searches that are over and of the one that is not
+    std::uint64_t attempts_ = 0;                             ///< plans that asked for a certificate
+    PlaceOrder failed_;                                      ///< in which the last search for a flight failed
+    Found best_;                                             ///< the best flight so far
+    PlaceOrder best_order_;                                  ///< in which it visits places; empty without a flight
     SearchRecord record_;
 };
 
@@ -145,6 +151,27 @@ void AnyOrder::compare_orders(const SearchBudget& budget) {
     spend(iterations);
 }
 
+/// Tells the caller that orders are compared, ten times a second.
+void AnyOrder::tell_of_legs() {
+    constexpr double period_s = 0.1;
+    const double now_s = clock_.seconds();
+    if (!options_.on_progress || now_s < told_at_s_ + period_s) {
+        return;
+    }
+    told_at_s_ = now_s;
+    Progress progress;
+    progress.wall_s = now_s;
+    progress.iterations = record_.iterations;
+    progress.nodes = nodes_before_;
+    for (const auto& [cause, count] : record_.rejected) {
+        progress.rejected += count;
+    }
+    progress.best_cost = has_way() ? std::optional(best_.cost) : std::nullopt;
+    progress.goals = problem_.targets.size() + (problem_.return_to ? 1 : 0);
+    progress.legs = table_.legs_flown();
+    options_.on_progress(progress);
+}
+
 VisitOrder AnyOrder::described(const PlaceOrder& order) const {
     VisitOrder described;
     for (const std::size_t place : order.places) {
@@ -179,6 +206,7 @@ bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool
         }
     }
     add_work(record_, result.record);
+    nodes_before_ += std::exchange(nodes_of_attempt_, 0);
     spend(iterations);
     const bool is_found = found.status == Status::solved;
     if (!is_found) {
@@ -199,6 +227,11 @@ SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& 
         inner.on_progress = [this, to_beat](Progress progress) {
             progress.wall_s = clock_.seconds();
             progress.iterations += record_.iterations;
+            nodes_of_attempt_ = progress.nodes;
+            progress.nodes += nodes_before_;
+            for (const auto& [cause, count] : record_.rejected) {
+                progress.rejected += count;
+            }
             if (has_way()) {
                 progress.best_cost = std::min(progress.best_cost.value_or(best_.cost), to_beat);
             }

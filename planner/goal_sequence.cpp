@@ -161,6 +161,7 @@ bool GoalSequence::goes_on_after(SearchResult part) {
     const double begun_at_s = record_.wall_s;
     const std::uint64_t iterations_before = record_.iterations;
     add_work(record_, part.record);
+    nodes_before_ += std::max<std::uint64_t>(found.tree.size(), std::exchange(nodes_of_part_, 0));
     add_trees(way.tree, found.tree);
     if (found.plan) {
         way.plan = course.plan.followed_by(*found.plan);
@@ -206,6 +207,11 @@ SolveOptions GoalSequence::options_of_part() {
         inner.on_progress = [this, goal, is_last](Progress progress) {
             progress.wall_s += record_.wall_s;
             progress.iterations += record_.iterations;
+            nodes_of_part_ = progress.nodes;
+            progress.nodes += nodes_before_;
+            for (const auto& [cause, count] : record_.rejected) {
+                progress.rejected += count;
+            }
             progress.goal = goal;
             progress.goals = goals_.size();
             progress.round = number_;

@@ -91,9 +91,11 @@ class DOWNWASH_EXPORT GoalSequence {
     Round round_;              ///< round that is going on
     Found best_;               ///< the best way so far or, without one, the farthest
     SearchRecord record_;
-    std::uint64_t attempts_;          ///< plans that asked for a certificate
-    std::vector<double> part_costs_;  ///< costs of the parts of the best way
-    std::vector<double> gains_;       ///< by how much each part became cheaper when the best way last did
+    std::uint64_t attempts_;           ///< plans that asked for a certificate
+    std::uint64_t nodes_before_ = 0;   ///< of the searches that are over
+    std::uint64_t nodes_of_part_ = 0;  ///< of the search that is going on, as it told last
+    std::vector<double> part_costs_;   ///< costs of the parts of the best way
+    std::vector<double> gains_;        ///< by how much each part became cheaper when the best way last did
     double told_cost_ = std::numeric_limits<double>::infinity();  ///< cost of the best way that the caller knows
 };
 

@@ -1,5 +1,7 @@
 #include "downwash/problems/key_reference.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 
 #include "downwash/base/angles.hpp"
@@ -102,6 +104,16 @@ std::optional<FileKind> file_kind_named(std::string_view name) {
         return FileKind::campaign;
     }
     return std::nullopt;
+}
+
+std::string_view out_of_plane_remark(std::string_view name) {
+    constexpr std::array names{"y",        "y_m", "vy_m_s",  "tolerance_y_m", "roll",
+                               "roll_deg", "yaw", "yaw_deg", "heading",       "yaw_rate_deg_s"};
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+        return {};
+    }
+    return "vehicle and arm move in a vertical plane, in which x_m and z_m are coordinates; environment.plane "
+           "(origin_m, heading_deg) places it in the scene";
 }
 
 const std::vector<KeyReference>& key_reference(FileKind kind) {

@@ -24,6 +24,9 @@ struct KeyReference {
     std::string default_text;  ///< For people; "required" or "one of its group" where a file has to say.
 };
 
+/// Why no file has a key of that name, as it is one of a motion out of the plane ("y_m", "yaw_deg"); empty for others.
+[[nodiscard]] DOWNWASH_EXPORT std::string_view out_of_plane_remark(std::string_view name);
+
 /// Every key of a kind of file, in the order in which they are documented, a group before what is in it.
 [[nodiscard]] DOWNWASH_EXPORT const std::vector<KeyReference>& key_reference(FileKind kind);
 

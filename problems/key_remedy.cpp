@@ -1,7 +1,10 @@
 #include "downwash/problems/key_remedy.hpp"
 
+#include <algorithm>
+
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/problems/key_reference.hpp"
 
 namespace downwash::problems {
 
@@ -23,6 +26,12 @@ KeyRemedy remedy_for_key(std::string_view key, const std::vector<std::string_vie
     }
     if (!other.empty()) {
         return {"its unit is wrong; expected " + joined_names(other), other};
+    }
+    const auto has = [&valid](std::string_view name) {
+        return std::find(valid.begin(), valid.end(), name) != valid.end();
+    };
+    if (const std::string_view remark = out_of_plane_remark(key); !remark.empty() && (has("x_m") || has("vx_m_s"))) {
+        return {std::string(remark), {}};
     }
     const std::string_view nearest = nearest_name(key, valid);
     if (!nearest.empty()) {

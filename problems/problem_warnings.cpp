@@ -61,22 +61,73 @@ std::vector<KeyError> thin_margins(const Robot& robot) {
     return {};
 }
 
-std::vector<KeyError> overlapping_discs(const Robot& robot) {
-    constexpr double level_share = 0.1;  // rotors farther apart in height than this share of a radius are coaxial
-    const auto& hubs = robot.rotors.positions_m;
-    const double radius_m = robot.rotors.radius_m;
+/// Two rotors, counted from 0, whose discs overlap in plan.
+struct OverlappingDiscs {
+    std::size_t i, j;
+    double apart_m;
+    bool are_level;
+};
+
+std::vector<OverlappingDiscs> overlapping_discs_of(const RotorParameters& rotors) {
+    constexpr double level_share = 0.1;  // of a radius
+    const auto& hubs = rotors.positions_m;
+    std::vector<OverlappingDiscs> found;
     for (std::size_t i = 0; i < hubs.size(); ++i) {
         for (std::size_t j = i + 1; j < hubs.size(); ++j) {
             const double apart_m = std::hypot(hubs[i][0] - hubs[j][0], hubs[i][1] - hubs[j][1]);
-            if (std::abs(hubs[i][2] - hubs[j][2]) <= level_share * radius_m && apart_m < 2 * radius_m * (1 - 1e-9)) {
-                return {{"rotors.positions_m", "puts the rotors " + std::to_string(i + 1) + " and " +
-                                                   std::to_string(j + 1) + " " + rounded(apart_m) +
-                                                   " m apart, less than two radii, " + rounded(2 * radius_m) +
-                                                   " m: their discs overlap"}};
+            if (apart_m < 2 * rotors.radius_m * (1 - 1e-9)) {
+                found.push_back({i, j, apart_m, std::abs(hubs[i][2] - hubs[j][2]) <= level_share * rotors.radius_m});
             }
         }
     }
+    return found;
+}
+
+std::string rotors_text(const OverlappingDiscs& discs) {
+    return "puts the rotors " + std::to_string(discs.i + 1) + " and " + std::to_string(discs.j + 1);
+}
+
+std::vector<KeyError> overlapping_discs(const Robot& robot) {
+    for (const OverlappingDiscs& discs : overlapping_discs_of(robot.rotors)) {
+        if (discs.are_level) {
+            return {{"rotors.positions_m", rotors_text(discs) + " " + rounded(discs.apart_m) +
+                                               " m apart, less than two radii, " + rounded(2 * robot.rotors.radius_m) +
+                                               " m: their discs overlap"}};
+        }
+    }
     return {};
+}
+
+/// A rotor in the slipstream of another. The factors of power are those of momentum theory for two rotors in one plane,
+/// 1.41, and of measured coaxial pairs, 1.2 (Leishman 2006, Principles of Helicopter Aerodynamics, section 2.15).
+std::vector<KeyError> coaxial_rotors(const Robot& robot) {
+    std::vector<OverlappingDiscs> pairs = overlapping_discs_of(robot.rotors);
+    std::erase_if(pairs, [](const OverlappingDiscs& discs) { return discs.are_level; });
+    if (pairs.empty()) {
+        return {};
+    }
+    return {
+        {"rotors.positions_m",
+         rotors_text(pairs.front()) + " one above the other" +
+             (pairs.size() > 1 ? ", one of " + std::to_string(pairs.size()) + " such pairs" : "") +
+             ": the lower one works in the slipstream of the upper one, but counts in full here. At the same thrust "
+             "such a pair takes 1.2 to 1.4 times the power: raise rotors.power_coefficient_w_n1p5 and lower "
+             "rotors.max_thrust_n to what the pairs give"}};
+}
+
+/// Far more thrust than a vehicle needs is likely in another unit.
+std::vector<KeyError> unusual_thrust(const Robot& robot) {
+    constexpr double most_times = 20;
+    const double greatest_n = static_cast<double>(robot.rotors.positions_m.size()) * robot.rotors.max_thrust_n;
+    const double times = greatest_n / (robot.mass_kg() * standard_gravity_m_s2);
+    if (times <= most_times) {
+        return {};
+    }
+    return {{"rotors.max_thrust_n", "is " + to_text(robot.rotors.max_thrust_n) + ", and all rotors lift " +
+                                        rounded(times) +
+                                        " times the weight: expected newtons of one rotor; if these are gram-force, as "
+                                        "in data sheets, it is " +
+                                        rounded(robot.rotors.max_thrust_n * standard_gravity_m_s2 / 1000) + " N"}};
 }
 
 /// All rotors at the same place along x have the same thrust, which is linear in x.
@@ -158,9 +209,26 @@ std::vector<KeyError> unusual_power(const Robot& robot) {
                  ": usual are 1.2 to 3 times; energies and plans for little energy are off by as much"}};
 }
 
+/// A robot that problems with uncertainty will not take, because of the uncertainty that it has by default.
+std::vector<KeyError> unflyable_default_uncertainty(const Robot& robot) {
+    if (robot.uncertainty) {
+        return {};  // then it is an error
+    }
+    constexpr std::string_view group = "uncertainty.vehicle.";
+    std::vector<KeyError> warnings;
+    for (const KeyError& error : uncertainty_errors(Uncertainty(), robot)) {
+        const bool is_delay = error.key.ends_with("delay_s");
+        warnings.push_back({is_delay ? "controller.delay_s" : "rotors.time_constant_s",
+                            "is too uncertain by default for problems with an `uncertainty:`: " +
+                                error.key.substr(group.size()) + " " + error.message});
+    }
+    return warnings;
+}
+
 std::vector<KeyError> robot_remarks(const Robot& robot) {
     std::vector<KeyError> all;
-    for (const auto& find : {thin_margins, overlapping_discs, unbalanced_roll, gains_of_zero, unusual_power}) {
+    for (const auto& find : {thin_margins, overlapping_discs, coaxial_rotors, unbalanced_roll, unusual_thrust,
+                             gains_of_zero, unusual_power, unflyable_default_uncertainty}) {
         const std::vector<KeyError> found = find(robot);
         all.insert(all.end(), found.begin(), found.end());
     }

@@ -29,6 +29,11 @@ std::string key_outside_robot(const std::string& path, std::string_view name) {
     return joined(path == robot ? "" : path.substr(robot.size() + 1), name);
 }
 
+/// What a group may be that nobody has thought about yet: a law whose gains all have defaults.
+std::string to_begin_with(std::string_view path) {
+    return path == "controller" || path == "robot.controller" ? ", to begin with {type: cascaded-pid}" : "";
+}
+
 }  // namespace
 
 template <class Model>
@@ -111,7 +116,8 @@ void TreeReader<Model>::read_keys(Group group) {
             read_parameter(group, *parameter);
         } else if (parameter->required && (!parameter->applies || parameter->applies(model_, group.index)) &&
                    std::count(group.meant.begin(), group.meant.end(), name) == 0) {
-            report(joined(group.key, name), group.mark, "is missing: expected " + expectation(*parameter));
+            report(joined(group.key, name), group.mark,
+                   "is missing: expected " + expectation(*parameter) + to_begin_with(parameter->path));
         }
     }
 }
@@ -157,6 +163,13 @@ void TreeReader<Model>::report_unknown(Group& group, const std::string& name, co
     std::vector<std::string_view> valid;
     for (const Parameter<Model>* child : table_.children(group.path)) {
         valid.push_back(last_name(child->path));
+    }
+    if (name == "<<") {
+        report(mark,
+               "merge keys (<<) are not read: expected the keys themselves; an alias (*name) may stand for a whole "
+               "value");
+        group.meant.insert(group.meant.end(), valid.begin(), valid.end());  // it may bring any of them
+        return;
     }
     const std::string elsewhere = key_outside_robot(group.path, name);
     const KeyRemedy remedy = elsewhere.empty() || table_.find(elsewhere) == nullptr

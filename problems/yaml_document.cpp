@@ -136,9 +136,20 @@ class TreeBuilder : public YAML::EventHandler {
     YamlNode::Pointer root_;
 };
 
+/// A text in which no line ends with CR alone, which YAML allows and the library does not know.
+std::string with_line_feeds(std::string text) {
+    for (std::size_t at = text.find('\r'); at != std::string::npos; at = text.find('\r', at + 1)) {
+        if (at + 1 == text.size() || text[at + 1] != '\n') {
+            text[at] = '\n';
+        }
+    }
+    return text;
+}
+
 }  // namespace
 
-YamlNode::Pointer parse_yaml(const std::string& text) {
+YamlNode::Pointer parse_yaml(const std::string& bytes) {
+    const std::string text = with_line_feeds(bytes);
     check_text(text);
     // The library takes a quote that is never closed for closed when the text ends in a line break: let it end
     // otherwise.

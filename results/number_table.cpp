@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "downwash/base/csv_lines.hpp"
+#include "downwash/base/csv_reader.hpp"
 #include "downwash/base/line_errors.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/results/result_limits.hpp"
@@ -17,44 +17,6 @@ bool is_name(std::string_view text) {
     return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
     });
-}
-
-void read_names(const CsvLines& lines, NumberTable& table, LineErrors& errors) {
-    lines.for_each_cell([&](std::string_view name, std::size_t column) {
-        if (std::find(table.names.begin(), table.names.end(), name) != table.names.end()) {
-            errors.add(lines.number(), column, "the column '" + excerpt(name) + "' is there twice");
-        }
-        if (!is_name(name)) {
-            errors.add(lines.number(), column,
-                       "'" + excerpt(name) + "' is no name of a column: expected letters, digits and '_'");
-        }
-        if (table.names.size() == max_columns) {
-            errors.add(lines.number(), column, "more than " + std::to_string(max_columns) + " columns");
-            errors.throw_any();
-        }
-        table.names.emplace_back(name);
-    });
-    table.columns.resize(table.names.size());
-}
-
-void read_row(const CsvLines& lines, NumberTable& table, LineErrors& errors) {
-    std::size_t cells = 0;
-    table.lines.push_back(lines.number());
-    lines.for_each_cell([&](std::string_view cell, std::size_t column) {
-        if (cells < table.columns.size()) {
-            const auto number = parse_number<double>(cell);
-            if (!number && !cell.empty()) {
-                errors.add(lines.number(), column, "'" + excerpt(cell) + "' is not a finite number");
-            }
-            table.columns[cells].push_back(number.value_or(std::numeric_limits<double>::quiet_NaN()));
-        }
-        ++cells;
-    });
-    if (cells != table.columns.size()) {
-        errors.add(lines.number(),
-                   std::to_string(cells) + " cells under " + std::to_string(table.columns.size()) + " column names");
-        errors.throw_any();
-    }
 }
 
 }  // namespace
@@ -75,25 +37,33 @@ NumberTable read_number_table(std::string_view text, const std::string& file,
                               const std::vector<std::string>& required) {
     NumberTable table;
     LineErrors errors(file);
-    CsvLines lines(text);
-    if (!lines.next()) {
-        errors.add(0, "the file is empty: expected a line of column names");
-        errors.throw_any();
+    CsvReader csv(text, errors, {max_table_numbers, max_columns});
+    for (std::size_t i = 0; i < csv.names().size(); ++i) {
+        if (!is_name(csv.names()[i])) {
+            errors.add(csv.header_line(), csv.header_place(i),
+                       "'" + excerpt(csv.names()[i]) + "' is no name of a column: expected letters, digits and '_'");
+        }
     }
-    read_names(lines, table, errors);
+    table.names = csv.names();
+    table.columns.resize(table.names.size());
     for (const std::string& name : required) {
         if (table.find(name) == nullptr) {
-            errors.add(lines.number(), "there is no column '" + name + "'");
+            errors.add(csv.header_line(), "there is no column '" + name + "'");
         }
     }
     errors.throw_any();
-    while (lines.next()) {
+    std::vector<double> numbers(table.names.size());
+    while (csv.next()) {
         if (table.rows() * table.columns.size() >= max_table_numbers) {
-            errors.add(lines.number(),
+            errors.add(csv.line(),
                        "more than " + std::to_string(max_table_numbers) + " numbers, the most that a run writes");
             break;
         }
-        read_row(lines, table, errors);
+        for (std::size_t i = 0; i < numbers.size(); ++i) {
+            numbers[i] = csv.cell(i).empty() ? std::numeric_limits<double>::quiet_NaN() : csv.number(i).value_or(0);
+        }
+        table.add_row(numbers);
+        table.lines.back() = csv.line();
     }
     errors.throw_any();
     return table;

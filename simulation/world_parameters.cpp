@@ -207,14 +207,17 @@ std::vector<KeyError> uncertainty_errors(const Uncertainty& uncertainty, const R
     } else if (lag_s > 0 && lags_s[0] < 0.5 * tick_s) {
         errors.push_back({"uncertainty.vehicle.rotor_time_constant_s",
                           "reaches down to " + to_text(lags_s[0], 4) + " s: expected at least half a control tick, " +
-                              to_text(0.5 * tick_s, 4) + " s"});
+                              to_text(0.5 * tick_s, 4) + " s; a controller.rate_hz of " +
+                              to_text(std::ceil(0.5 / std::max(lags_s[0], 1e-6))) + " or more would do"});
     }
     const auto delays_s = ends_of(uncertainty.delay_s, robot.controller.delay_s);
     if (delays_s[0] < 0 || delays_s[1] > simulation::max_delay_ticks * tick_s * (1 + 1e-9)) {
         errors.push_back({"uncertainty.vehicle.delay_s",
                           "reaches from " + to_text(delays_s[0], 4) + " to " + to_text(delays_s[1], 4) +
                               " s: expected 0 to " + std::to_string(simulation::max_delay_ticks) + " control ticks, " +
-                              to_text(simulation::max_delay_ticks * tick_s, 4) + " s"});
+                              to_text(simulation::max_delay_ticks * tick_s, 4) + " s; a controller.rate_hz of " +
+                              to_text(std::floor(simulation::max_delay_ticks / delays_s[1])) +
+                              " or less would do, or a narrower {range: [low, high]} of delays"});
     }
     return errors;
 }

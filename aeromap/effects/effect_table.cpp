@@ -7,10 +7,11 @@
 #include <tuple>
 #include <utility>
 
+#include "downwash/base/csv_reader.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/sha256.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/effects/csv_table.hpp"
+#include "downwash/effects/effect_csv.hpp"
 #include "downwash/effects/monotone_cubic.hpp"
 
 namespace downwash {
@@ -204,13 +205,13 @@ std::vector<double> axis_of(const std::vector<Entry>& entries, double Entry::*co
         if (axis.empty() || value > axis.back()) {
             if (!axis.empty() && value - axis.back() < min_step) {
                 errors.add(line, name + " " + to_text(value) + " is hardly above " + to_text(axis.back()) +
-                                     "; expected steps of at least 1e-6, or exactly the same number");
+                                     ": expected steps of at least 1e-6, or exactly the same number");
             }
             axis.push_back(value);
         }
     }
     if (axis.size() < 2) {
-        errors.add(0, name + " is " + to_text(axis.front()) + " in every row; expected two or more distances" +
+        errors.add(0, name + " is " + to_text(axis.front()) + " in every row: expected two or more distances" +
                           (name == "d_over_r" ? ", or no such column" : ""));
     }
     return axis;
@@ -234,32 +235,35 @@ void check_grid(const std::vector<Entry>& entries, const std::vector<double>& z,
                 ++next;
             } else {
                 errors.add(0, "has no row for " + distance_text(expected, has_d) +
-                                  "; expected one for every combination of distances");
+                                  ": expected one for every combination of distances");
                 errors.throw_any();
             }
         }
     }
 }
 
-std::vector<Entry> entries_of(const CsvTable& csv, LineErrors& errors) {
+std::vector<Entry> entries_of(CsvReader& csv, LineErrors& errors) {
     const auto z = csv.find("z_over_r");
     const auto d = csv.find("d_over_r");
     const auto factor = csv.find("factor") ? csv.find("factor") : csv.find("thrust_ratio");
-    if (!z || !factor || csv.columns.size() != (d ? 3U : 2U)) {
-        errors.add(csv.header_line, "expected the columns z_over_r,factor or z_over_r,d_over_r,factor");
+    const auto named = std::count_if(csv.names().begin(), csv.names().end(), [](const auto& n) { return !n.empty(); });
+    if (!z || !factor || named != (d ? 3 : 2)) {
+        errors.add(csv.header_line(), "has the columns '" + excerpt(joined(csv.names(), ", ")) +
+                                          "': expected z_over_r,factor or z_over_r,d_over_r,factor");
         errors.throw_any();
     }
     std::vector<Entry> entries;
-    for (const CsvTable::Row& row : csv.rows) {
-        const auto z_over_r = number_in(csv, row, *z, 0, max_z_over_r, errors);
-        const auto d_over_r = d ? number_in(csv, row, *d, 0, max_d_over_r, errors) : std::optional(0.0);
-        const auto k = number_in(csv, row, *factor, 0, max_factor, errors);
+    while (csv.next()) {
+        const auto z_over_r = csv.number(*z, 0, max_z_over_r);
+        const auto d_over_r = d ? csv.number(*d, 0, max_d_over_r) : std::optional(0.0);
+        const auto k = csv.number(*factor, 0, max_factor);
         if (z_over_r && d_over_r && k) {
-            entries.push_back({*z_over_r, *d_over_r, *k, row.line});
+            entries.push_back({*z_over_r, *d_over_r, *k, csv.line()});
         }
     }
-    if (csv.rows.empty()) {
-        errors.add(csv.header_line, "no rows follow; expected a table of two or more distances");
+    errors.throw_any();
+    if (entries.empty()) {
+        errors.add(csv.header_line(), "no rows follow: expected a table of two or more distances");
     }
     errors.throw_any();
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
@@ -272,8 +276,7 @@ std::vector<Entry> entries_of(const CsvTable& csv, LineErrors& errors) {
 
 std::shared_ptr<const EffectTable> parse_effect_table(std::string_view text, std::string_view name) {
     LineErrors errors{std::string(name)};
-    const CsvTable csv = parse_csv(text, errors);
-    errors.throw_any();
+    CsvReader csv(text, errors, effect_csv_limits);
     const std::vector<Entry> entries = entries_of(csv, errors);
     const bool has_d = csv.find("d_over_r").has_value();
     std::vector<double> z = axis_of(entries, &Entry::z_over_r, "z_over_r", errors);
@@ -290,7 +293,7 @@ std::shared_ptr<const EffectTable> parse_effect_table(std::string_view text, std
 }
 
 std::shared_ptr<const EffectTable> read_effect_table(const std::filesystem::path& file) {
-    return parse_effect_table(read_csv_text(file), file.string());
+    return parse_effect_table(read_effect_csv(file), file.string());
 }
 
 }  // namespace downwash

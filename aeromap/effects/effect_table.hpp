@@ -72,7 +72,7 @@ class DOWNWASH_EXPORT EffectTable {
 /// SHA-256 of a table's distances and factors, down to the last bit, as 64 hexadecimal digits.
 [[nodiscard]] DOWNWASH_EXPORT std::string digest_of(const EffectTable& table);
 
-/// Reads a table from a CSV file: lines that begin with `#` are comments, then a header `z_over_r,factor` or
+/// Reads a table from a CSV file in any dialect of CsvReader: a header `z_over_r,factor` or
 /// `z_over_r,d_over_r,factor` (`thrust_ratio` is understood for `factor`), then a row for every combination of
 /// distances, in any order. At most 100000 rows and 16 MB.
 /// @throws InputError with "file:line: what is wrong" for each error found

@@ -1,26 +1,15 @@
 #include "downwash/effects/measurements.hpp"
 
-#include <algorithm>
 #include <set>
 #include <utility>
 
-#include "downwash/effects/csv_table.hpp"
+#include "downwash/base/csv_reader.hpp"
+#include "downwash/effects/effect_csv.hpp"
 
 namespace downwash {
-namespace {
-
-std::size_t required(const CsvTable& csv, const std::string& column, LineErrors& errors) {
-    const auto found = csv.find(column);
-    if (!found) {
-        errors.add(csv.header_line, "has no column " + column + "; expected z_over_r and thrust_ratio");
-    }
-    return found.value_or(0);
-}
-
-}  // namespace
 
 std::optional<std::size_t> Measurements::index(std::string_view column) const {
-    return index_of(columns, column);
+    return find_column(columns, column);
 }
 
 std::vector<std::string> Measurements::entries(std::string_view column) const {
@@ -50,34 +39,39 @@ Measurements Measurements::with(std::string_view column, std::string_view entry)
 
 Measurements parse_measurements(std::string_view text, std::string_view name) {
     LineErrors errors{std::string(name)};
-    const CsvTable csv = parse_csv(text, errors);
-    const std::size_t z = required(csv, "z_over_r", errors);
-    const std::size_t ratio = required(csv, "thrust_ratio", errors);
+    CsvReader csv(text, errors, effect_csv_limits);
+    constexpr auto expected = "z_over_r and thrust_ratio";
+    const std::size_t z = csv.required("z_over_r", expected);
+    const std::size_t ratio = csv.required("thrust_ratio", expected);
     errors.throw_any();
     const auto sigma = csv.find("sigma");
     const auto tilt = csv.find("tilt_deg");
-    Measurements measurements{csv.columns, {}};
-    for (const CsvTable::Row& row : csv.rows) {
-        Measurement point{0, 0, 0, std::nullopt, row.line, row.cells};
-        point.z_over_r = number_in(csv, row, z, 1e-6, 1000, errors).value_or(0);
-        point.thrust_ratio = number_in(csv, row, ratio, 0, 100, errors).value_or(0);
-        if (sigma && !row.cells[*sigma].empty()) {
-            point.sigma = number_in(csv, row, *sigma, 1e-9, 100, errors);
+    Measurements measurements{csv.names(), {}};
+    while (csv.next()) {
+        Measurement point{0, 0, 0, std::nullopt, csv.line(), {}};
+        point.z_over_r = csv.number(z, 1e-6, 1000).value_or(0);
+        point.thrust_ratio = csv.number(ratio, 0, 100).value_or(0);
+        if (sigma && !csv.cell(*sigma).empty()) {
+            point.sigma = csv.number(*sigma, 1e-9, 100);
         }
-        if (tilt && !row.cells[*tilt].empty()) {
-            point.tilt_deg = number_in(csv, row, *tilt, 0, 90, errors).value_or(0);
+        if (tilt && !csv.cell(*tilt).empty()) {
+            point.tilt_deg = csv.number(*tilt, 0, 90).value_or(0);
+        }
+        for (std::size_t column = 0; column < csv.names().size(); ++column) {
+            point.cells.emplace_back(csv.cell(column));
         }
         measurements.points.push_back(std::move(point));
     }
-    if (csv.rows.empty()) {
-        errors.add(csv.header_line, "no rows follow; expected measurements");
+    errors.throw_any();
+    if (measurements.points.empty()) {
+        errors.add(csv.header_line(), "no rows follow: expected measurements");
     }
     errors.throw_any();
     return measurements;
 }
 
 Measurements read_measurements(const std::filesystem::path& file) {
-    return parse_measurements(read_csv_text(file), file.string());
+    return parse_measurements(read_effect_csv(file), file.string());
 }
 
 }  // namespace downwash

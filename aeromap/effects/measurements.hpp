@@ -26,7 +26,7 @@ struct DOWNWASH_EXPORT Measurements {
     std::vector<std::string> columns;  ///< names of `cells`
     std::vector<Measurement> points;   ///< points in the order of the file
 
-    /// The position of a column in `columns`; empty if there is none of that name.
+    /// The position of a column in `columns`, as find_column() finds it; empty if there is none of that name.
     [[nodiscard]] std::optional<std::size_t> index(std::string_view column) const;
     /// The distinct entries of a column, in the order of their first appearance; none without such a column.
     [[nodiscard]] std::vector<std::string> entries(std::string_view column) const;
@@ -34,7 +34,7 @@ struct DOWNWASH_EXPORT Measurements {
     [[nodiscard]] Measurements with(std::string_view column, std::string_view entry) const;
 };
 
-/// Reads measurements from a CSV file: lines that begin with `#` are comments, then a header with `z_over_r` (in
+/// Reads measurements from a CSV file in any dialect of CsvReader: a header with `z_over_r` (in
 /// [1e-6, 1000]), `thrust_ratio` (in [0, 100]), optionally `sigma` (in [1e-9, 100], or empty) and `tilt_deg` (in [0,
 /// 90], or empty for 0), and any others, for example `surface` and `source`. At most 100000 rows and 16 MB.
 /// @throws InputError with "file:line: what is wrong" for each error found

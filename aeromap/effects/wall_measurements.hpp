@@ -17,7 +17,7 @@ struct WallMeasurement {
     double moment_over_thrust_radius = 0;  ///< pitch moment over T R
 };
 
-/// Reads such measurements from a CSV file: lines that begin with `#` are comments, then a header with
+/// Reads such measurements from a CSV file in any dialect of CsvReader: a header with
 /// `distance_over_r` (in [1, 1000]), `force_over_thrust` and `moment_over_thrust_radius` (in [-10, 10]), optionally
 /// `facility`; other columns are ignored. At most 100000 rows and 16 MiB.
 /// @throws InputError with "file:line: what is wrong" for each error found

@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::array<std::string_view, 4> field_names{"factor", "ground", "ceiling", "flyable"};
 constexpr double max_coordinate_m = 1e6;
-constexpr double edge_slack_m = 1e-9;
-constexpr double layer_slack_m = 1e-6;
 
 bool is_coordinate(double value) {
     return std::abs(value) <= max_coordinate_m;  // NaN fails
@@ -41,7 +39,7 @@ void check_offsets(const FactorGridParts& parts, std::vector<KeyError>& errors) 
         errors.push_back({"lateral_offsets_m", "expected finite distances, at most 1e6 m"});
         return;
     }
-    const auto is_not_rising = [](double a, double b) { return !(b - a > 2 * layer_slack_m); };
+    const auto is_not_rising = [](double a, double b) { return !(b - a > 2 * default_layer_slack_m); };
     if (std::adjacent_find(offsets_m.begin(), offsets_m.end(), is_not_rising) != offsets_m.end()) {
         errors.push_back({"lateral_offsets_m", "expected rising distances, more than 2e-6 m apart"});
     }
@@ -120,8 +118,8 @@ void check_provenance(const Provenance& provenance, std::vector<KeyError>& error
 }
 
 /// The interval of an axis that holds a coordinate, and where in it, 0 to 1. False outside.
-bool locate(const GridAxis& axis, double coordinate_m, std::size_t& index, double& part) {
-    if (!(coordinate_m >= axis.low_m - edge_slack_m && coordinate_m <= axis.high_m + edge_slack_m)) {
+bool locate(const GridAxis& axis, double slack_m, double coordinate_m, std::size_t& index, double& part) {
+    if (!(coordinate_m >= axis.low_m - slack_m && coordinate_m <= axis.high_m + slack_m)) {
         return false;
     }
     const double steps = (coordinate_m - axis.low_m) / axis.step_m();
@@ -150,6 +148,11 @@ FactorGrid::FactorGrid(FactorGridParts parts) : parts_(std::move(parts)) {
         errors.push_back({"y", "of a planar grid is 0: expected the frame's origin in its plane"});
     }
     check_offsets(parts_, errors);
+    const auto is_slack = [](double slack_m) { return slack_m >= 0 && is_coordinate(slack_m); };
+    if (!std::all_of(parts_.edge_slack_m.begin(), parts_.edge_slack_m.end(), is_slack) ||
+        !is_slack(parts_.layer_slack_m)) {
+        errors.push_back({"slack", "expected finite distances, at least 0"});
+    }
     const std::size_t nodes = checked_nodes(parts_);
     if (nodes == 0) {
         errors.push_back({"", "the grid has more than 2^24 nodes: expected a larger step or a smaller extent"});
@@ -183,15 +186,16 @@ const std::vector<double>* FactorGrid::field(std::string_view name) const noexce
 std::optional<FactorGrid::Place> FactorGrid::place_of(const Vector3& hub_m) const noexcept {
     const auto [x_m, y_m, z_m] = parts_.frame.from_world(hub_m);
     Place place{};
-    if (!locate(parts_.x, x_m, place.i, place.s) || !locate(parts_.z, z_m, place.k, place.u)) {
+    const auto& [slack_x_m, slack_y_m, slack_z_m] = parts_.edge_slack_m;
+    if (!locate(parts_.x, slack_x_m, x_m, place.i, place.s) || !locate(parts_.z, slack_z_m, z_m, place.k, place.u)) {
         return std::nullopt;
     }
     if (!is_planar()) {
-        return locate(parts_.y, y_m, place.j, place.t) ? std::optional(place) : std::nullopt;
+        return locate(parts_.y, slack_y_m, y_m, place.j, place.t) ? std::optional(place) : std::nullopt;
     }
     const std::vector<double>& offsets_m = parts_.lateral_offsets_m;
     for (; place.layer < offsets_m.size(); ++place.layer) {
-        if (std::abs(y_m - offsets_m[place.layer]) <= layer_slack_m) {
+        if (std::abs(y_m - offsets_m[place.layer]) <= parts_.layer_slack_m) {
             return place;
         }
     }

@@ -39,6 +39,10 @@ struct GridField {
 /// Where a grid comes from, as ordered pairs of key and value: program, problem, models and their sources, radius, ...
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
+/// How far beyond the outermost nodes of a grid, and beside its layers, positions count as on them [m].
+inline constexpr double default_edge_slack_m = 1e-9;
+inline constexpr double default_layer_slack_m = 1e-6;
+
 /// The parts of a grid of thrust ratios.
 struct FactorGridParts {
     /// The frame of the coordinates x, y, z: y points to the left, z up.
@@ -50,6 +54,9 @@ struct FactorGridParts {
     /// "factor" and any of "ground", "ceiling" (one-sided factors) and "flyable" (0 or 1), each once.
     std::vector<GridField> fields;
     Provenance provenance;
+    /// Larger than by default where the coordinates were rounded: half a unit of their last digit, along x, y and z.
+    Vector3 edge_slack_m{default_edge_slack_m, default_edge_slack_m, default_edge_slack_m};
+    double layer_slack_m = default_layer_slack_m;
 };
 
 /// K on a regular grid of rotor hub positions, from a map of ours, a simulation or a measurement. Planar (nx x 1 x nz
@@ -57,8 +64,9 @@ struct FactorGridParts {
 class DOWNWASH_EXPORT FactorGrid {
  public:
     /// @throws InputError if an axis is not finite, is larger than 1e6 m, or has high <= low (y of a planar grid: not
-    /// 0, 0, 1), if the grid has more than 2^24 nodes, if a field is unknown, missing, of another length or out of
-    /// range (factors: 0 to 100), or if a piece of provenance does not fit on one line of text
+    /// 0, 0, 1), if a slack is negative or not finite, if the grid has more than 2^24 nodes, if a field is unknown,
+    /// missing, of another length or out of range (factors: 0 to 100), or if a piece of provenance does not fit on one
+    /// line of text
     explicit FactorGrid(FactorGridParts parts);
 
     [[nodiscard]] bool is_planar() const noexcept { return parts_.y.count == 1; }
@@ -70,6 +78,8 @@ class DOWNWASH_EXPORT FactorGrid {
     /// "factor" first.
     [[nodiscard]] const std::vector<GridField>& fields() const noexcept { return parts_.fields; }
     [[nodiscard]] const Provenance& provenance() const noexcept { return parts_.provenance; }
+    [[nodiscard]] const Vector3& edge_slack_m() const noexcept { return parts_.edge_slack_m; }
+    [[nodiscard]] double layer_slack_m() const noexcept { return parts_.layer_slack_m; }
 
     /// One layer, or as many as lateral offsets.
     [[nodiscard]] std::size_t layers() const noexcept;
@@ -79,8 +89,8 @@ class DOWNWASH_EXPORT FactorGrid {
     /// The values of the field of that name; nullptr when there is none.
     [[nodiscard]] const std::vector<double>* field(std::string_view name) const noexcept;
 
-    /// Whether K is known at the world position of a rotor hub: between the outermost nodes (within 1e-9 m), and on a
-    /// layer (within 1e-6 m) where the layers have lateral offsets.
+    /// Whether K is known at the world position of a rotor hub: between the outermost nodes (within edge_slack_m), and
+    /// on a layer (within layer_slack_m) where the layers have lateral offsets.
     [[nodiscard]] bool contains(const Vector3& hub_m) const noexcept;
 
     /// K at the world position of a rotor hub, linear along each axis between the nodes; NaN where the grid does not

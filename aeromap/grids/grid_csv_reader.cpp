@@ -2,8 +2,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
-#include "downwash/base/csv_lines.hpp"
+#include "downwash/base/csv_dialect.hpp"
+#include "downwash/base/csv_reader.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/line_errors.hpp"
 #include "downwash/base/text.hpp"
@@ -17,15 +19,44 @@ namespace {
 
 constexpr std::size_t max_rows = max_grid_nodes;
 constexpr std::size_t max_columns = 256;
-/// How far a coordinate may be off its node, in steps.
-constexpr double spacing_slack = 1e-6;
+/// How far a coordinate may be off its node, in steps; farther if it is rounded, but not by more than the second.
+constexpr double min_slack = 1e-6;
+constexpr double max_slack = 0.05;
 
 enum Column : std::size_t { x, lateral, y, z, first_field };
 constexpr std::array<std::string_view, 8> column_names{"x_m",    "lateral_m", "y_m",     "z_m",
                                                        "factor", "ground",    "ceiling", "flyable"};
 
+/// How finely a column of coordinates is written.
+class WrittenUnit {
+ public:
+    void see(std::string_view number) {
+        const WrittenDigits digits = written_digits(number);
+        is_fixed_ = is_fixed_ && (significant_ == 0 || digits.decimals == decimals_);
+        decimals_ = significant_ == 0 ? digits.decimals : std::max(decimals_, digits.decimals);
+        significant_ = std::max({1, significant_, digits.significant});
+    }
+
+    /// The unit of the last digit of a coordinate: of a fixed number of decimals if all have as many, else of as many
+    /// significant digits as the longest has. Trailing zeros may be missing, so there are at least five.
+    [[nodiscard]] double of(double coordinate_m) const {
+        constexpr int min_significant = 5;
+        constexpr double float_unit = 0x1p-23;  // of flow solvers that write their single precision with more digits
+        const double size_m = std::abs(coordinate_m);
+        const double whole_digits = size_m > 0 ? std::floor(std::log10(size_m)) + 1 : -decimals_;
+        const double decimals =
+            is_fixed_ && decimals_ > 0 ? decimals_ : std::max(min_significant, significant_) - whole_digits;
+        return std::max(std::pow(10, -decimals), float_unit * size_m);
+    }
+
+ private:
+    bool is_fixed_ = true;
+    int decimals_ = 0, significant_ = 0;
+};
+
 struct GridCsv {
     std::array<std::vector<double>, column_names.size()> columns;  ///< empty where the file has none
+    std::array<WrittenUnit, first_field> units;                    ///< of the coordinates
     std::vector<std::uint32_t> lines;                              ///< of each row
     std::optional<Vector3> frame_origin_m;
     std::optional<double> frame_heading_rad;
@@ -36,72 +67,70 @@ struct GridCsv {
 
 constexpr std::string_view xml_remedy =
     "VTK's XML is written by Downwash, not read: expected CSV (`downwash aeromap build PROBLEM -o FILE.csv`, or in "
-    "ParaView: File, Save Data, as CSV with 17 digits)";
+    "ParaView: File, Save Data, as CSV)";
+constexpr std::string_view expected_columns = "x_m,z_m,factor or x_m,y_m,z_m,factor";
 
-/// The index of a column's name, also of those by which ParaView saves the coordinates of points; past the names if it
-/// is none of ours.
-std::size_t role_of(std::string_view name) {
-    if (name.size() > 1 && name.starts_with('"') && name.ends_with('"')) {
-        name = name.substr(1, name.size() - 2);
-    }
-    for (const auto& [theirs, role] :
-         {std::pair{"Points:0", Column::x}, std::pair{"Points:1", y}, std::pair{"Points:2", z}}) {
-        if (name == theirs) {
-            return role;
+/// The column of one of our names, or of the name by which ParaView saves that coordinate of points.
+std::optional<std::size_t> column_of(const CsvReader& csv, std::size_t role) {
+    auto column = csv.find(column_names[role]);
+    if (role == Column::x || role == y || role == z) {
+        const char index = static_cast<char>(role == Column::x ? '0' : role == y ? '1' : '2');
+        for (const char* points : {"Points:", "Points_"}) {
+            column = column ? column : csv.find(points + std::string(1, index));
         }
     }
-    return static_cast<std::size_t>(std::find(column_names.begin(), column_names.end(), name) - column_names.begin());
-}
-
-std::string text_number(std::string_view cell) {
-    return "'" + excerpt(cell) + "'";
+    return column;
 }
 
 /// Reads lines into columns.
-class CsvReader {
+class GridCsvReader {
  public:
-    CsvReader(std::string_view text, LineErrors& errors) : line_(text), errors_(errors) {}
+    GridCsvReader(std::string_view text, LineErrors& errors)
+        : csv_(text, errors, {max_rows, max_columns}), errors_(errors) {}
 
     GridCsv read() {
-        while (line_.next()) {
-            if (line_.is_comment()) {
-                read_comment(line_.comment());
-            } else if (roles_.empty()) {
-                read_header();
-                errors_.throw_any();
-            } else {
-                read_row();
+        find_columns();
+        errors_.throw_any();
+        while (csv_.next()) {
+            grid_.lines.push_back(static_cast<std::uint32_t>(csv_.line()));
+            for (std::size_t role = 0; role < column_names.size(); ++role) {
+                if (columns_[role]) {
+                    read_cell(*columns_[role], role);
+                }
             }
         }
-        if (roles_.empty()) {
-            errors_.add(0, "holds no line of column names: expected x_m,z_m,factor or x_m,y_m,z_m,factor");
-        } else if (csv_.lines.empty()) {
+        for (const CsvReader::Comment& comment : csv_.comments()) {
+            read_comment(comment);
+        }
+        errors_.throw_any();
+        if (grid_.lines.empty()) {
             errors_.add(0, "holds no row");
         }
         errors_.throw_any();
-        return std::move(csv_);
+        return std::move(grid_);
     }
 
  private:
-    void read_comment(std::string_view text) {
-        auto [key, value] = provenance_entry(text);
+    void read_comment(const CsvReader::Comment& comment) {
+        auto [key, value] = provenance_entry(comment.text);
         if (key == "frame_origin_m") {
-            if (const auto numbers = numbers_in(value, 3); !numbers.empty()) {
-                csv_.frame_origin_m = {numbers[0], numbers[1], numbers[2]};
+            if (const auto numbers = numbers_in(value, 3, comment.line); !numbers.empty()) {
+                grid_.frame_origin_m = {numbers[0], numbers[1], numbers[2]};
             }
         } else if (key == "frame_heading_rad") {
-            if (const auto numbers = numbers_in(value, 1); !numbers.empty()) {
-                csv_.frame_heading_rad = numbers[0];
+            if (const auto numbers = numbers_in(value, 1, comment.line); !numbers.empty()) {
+                grid_.frame_heading_rad = numbers[0];
             }
         } else if (!value.empty() || key != "comment") {
-            csv_.provenance.emplace_back(std::move(key), std::move(value));
+            grid_.provenance.emplace_back(std::move(key), std::move(value));
         }
     }
 
     /// Exactly so many finite numbers, or an error and none.
-    std::vector<double> numbers_in(std::string_view text, std::size_t count) {
+    std::vector<double> numbers_in(std::string_view text, std::size_t count, std::size_t line) {
         std::vector<double> numbers;
-        std::string_view rest = text;
+        // Spreadsheets fill lines with separators.
+        std::string_view rest = text.substr(0, text.find_last_not_of(",; \t") + 1);
         for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
             const auto number = parse_number<double>(word);
             if (!number || numbers.size() == count) {
@@ -114,78 +143,40 @@ class CsvReader {
             return numbers;
         }
         errors_.add(
-            line_.number(), 1,
-            text_number(text) + ": expected " + std::to_string(count) + " finite number" + (count == 1 ? "" : "s"));
+            line, 1,
+            "'" + excerpt(text) + "': expected " + std::to_string(count) + " finite number" + (count == 1 ? "" : "s"));
         return {};
     }
 
-    void read_header() {
-        if (line_.text().starts_with('<')) {
-            errors_.add(line_.number(), 1, std::string(xml_remedy));
-            return;
+    void find_columns() {
+        for (std::size_t role = 0; role < column_names.size(); ++role) {
+            columns_[role] = column_of(csv_, role);
         }
-        line_.for_each_cell([&](std::string_view cell, std::size_t column) {
-            const std::size_t role = role_of(cell);
-            if (role < column_names.size() && std::find(roles_.begin(), roles_.end(), role) != roles_.end()) {
-                errors_.add(line_.number(), column, "column " + text_number(cell) + " occurs twice");
-            }
-            roles_.push_back(role);
-        });
-        const auto has = [&](std::size_t role) {
-            return std::find(roles_.begin(), roles_.end(), role) != roles_.end();
-        };
-        for (const std::size_t needed : {std::size_t{Column::x}, std::size_t{Column::z}, std::size_t{first_field}}) {
-            if (!has(needed)) {
-                errors_.add(line_.number(), 1,
-                            "column " + std::string(column_names[needed]) + " is missing in '" + excerpt(line_.text()) +
-                                "': expected x_m,z_m,factor or x_m,y_m,z_m,factor, separated by commas");
+        for (const std::size_t needed : {std::size_t{Column::x}, std::size_t{z}, std::size_t{first_field}}) {
+            if (!columns_[needed]) {
+                static_cast<void>(csv_.required(column_names[needed], expected_columns));
             }
         }
-        if (has(lateral) && has(y)) {
-            errors_.add(line_.number(), 1, "expected lateral_m (layers beside the plane) or y_m (a volume), not both");
-        }
-        if (roles_.size() > max_columns) {
-            errors_.add(line_.number(), 1, "has more than 256 columns");
+        if (columns_[lateral] && columns_[y]) {
+            errors_.add(csv_.header_line(), "expected lateral_m (layers beside the plane) or y_m (a volume), not both");
         }
     }
 
-    void read_row() {
-        std::size_t index = 0;
-        line_.for_each_cell([&](std::string_view cell, std::size_t column) {
-            if (index < roles_.size() && roles_[index] < column_names.size()) {
-                read_cell(cell, column, roles_[index]);
-            }
-            ++index;
-        });
-        if (index != roles_.size()) {
-            errors_.add(line_.number(), 1,
-                        "has " + std::to_string(index) + " cells: expected " + std::to_string(roles_.size()) +
-                            " as in the line of column names");
-        }
-        csv_.lines.push_back(static_cast<std::uint32_t>(line_.number()));
-        if (csv_.lines.size() > max_rows) {
-            errors_.add(line_.number(), 1, "more than 2^24 rows: expected a larger step or a smaller extent");
-            errors_.throw_any();
-        }
-    }
-
-    void read_cell(std::string_view cell, std::size_t column, std::size_t role) {
-        const auto number = parse_number<double>(cell);
+    void read_cell(std::size_t column, std::size_t role) {
         const bool is_coordinate = role < first_field;
         const double min = is_coordinate ? -1e6 : 0;
         const double max = is_coordinate ? 1e6 : (column_names[role] == "flyable" ? 1 : 100);
-        if (!number || *number < min || *number > max) {
-            errors_.add(line_.number(), column,
-                        std::string(column_names[role]) + " is " + text_number(cell) + ": expected a number from " +
-                            to_text(min) + " to " + to_text(max));
+        const auto number = csv_.number(column, min, max);
+        grid_.columns[role].push_back(number.value_or(0));
+        if (is_coordinate && number) {
+            grid_.units[role].see(csv_.cell(column));
         }
-        csv_.columns[role].push_back(number.value_or(0));
     }
 
-    CsvLines line_;
+    CsvReader csv_;
     LineErrors& errors_;
-    std::vector<std::size_t> roles_;  ///< of each column; past the names for columns that are not ours
-    GridCsv csv_;
+    std::array<std::optional<std::size_t>, column_names.size()> columns_;
+    GridCsv grid_;
 };
 
 /// The distinct values of a column in rising order; what differs by rounding only counts once.
@@ -216,6 +207,8 @@ class NodeFinder {
             parts.lateral_offsets_m = distinct_values(csv_.columns[lateral]);
         }
         errors_.throw_any();
+        parts.edge_slack_m = {edge_slack_m(parts.x, Column::x), edge_slack_m(parts.y, y), edge_slack_m(parts.z, z)};
+        parts.layer_slack_m = layer_slack_m(parts.lateral_offsets_m);
         const std::size_t layers = std::max<std::size_t>(1, parts.lateral_offsets_m.size());
         const double nodes = static_cast<double>(parts.x.count) * static_cast<double>(parts.y.count) *
                              static_cast<double>(parts.z.count) * static_cast<double>(layers);
@@ -259,12 +252,38 @@ class NodeFinder {
         return {values.front(), values.back(), values.size()};
     }
 
+    /// Half a unit of the last digit of the ends of an axis, where its coordinates may have been before they were
+    /// rounded.
+    double edge_slack_m(const GridAxis& axis, std::size_t column) const {
+        const double unit_m = std::max(csv_.units[column].of(axis.low_m), csv_.units[column].of(axis.high_m));
+        return csv_.has(column) ? std::clamp(unit_m / 2, default_edge_slack_m, max_slack * axis.step_m())
+                                : default_edge_slack_m;
+    }
+
+    double layer_slack_m(const std::vector<double>& offsets_m) const {
+        double slack_m = default_layer_slack_m;
+        double max_slack_m = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < offsets_m.size(); ++i) {
+            slack_m = std::max(slack_m, csv_.units[lateral].of(offsets_m[i]) / 2);
+            max_slack_m = i > 0 ? std::min(max_slack_m, max_slack * (offsets_m[i] - offsets_m[i - 1])) : max_slack_m;
+        }
+        return std::max(default_layer_slack_m, std::min(slack_m, max_slack_m));
+    }
+
+    /// How far a coordinate may be off its node. It is rounded, and so are the ends of the axis that place the nodes.
+    double slack_m(const GridAxis& axis, std::size_t column, double value) const {
+        const WrittenUnit& unit = csv_.units[column];
+        const double rounding_m = (unit.of(value) + std::max(unit.of(axis.low_m), unit.of(axis.high_m))) / 2;
+        return std::clamp(rounding_m, min_slack * axis.step_m(), max_slack * axis.step_m());
+    }
+
     /// Index along an axis.
     std::size_t index_of(const GridAxis& axis, std::size_t column, std::size_t row) {
         const double value = csv_.columns[column][row];
         const double steps = std::round((value - axis.low_m) / axis.step_m());
         const auto index = std::min(static_cast<std::size_t>(std::max(0.0, steps)), axis.count - 1);
-        if (!(std::abs(value - axis.at(index)) <= spacing_slack * axis.step_m())) {
+        const double offset_m = std::abs(value - axis.at(index));
+        if (!(offset_m <= min_slack * axis.step_m() || offset_m <= slack_m(axis, column, value))) {
             errors_.add(csv_.lines[row], 1,
                         std::string(column_names[column]) + " is " + to_text(value) + ": expected " +
                             to_text(axis.at(index), 9) + ", as the " + std::to_string(axis.count) +
@@ -317,7 +336,11 @@ class NodeFinder {
 
 FactorGrid parse_factor_grid(std::string_view bytes, const std::string& name, const PlaneOfMotion& plane) {
     LineErrors errors(name);
-    GridCsv csv = CsvReader(bytes, errors).read();
+    if (trimmed(bytes.substr(0, bytes.find('>'))).starts_with('<')) {
+        errors.add(1, 1, std::string(xml_remedy));
+        errors.throw_any();
+    }
+    GridCsv csv = GridCsvReader(bytes, errors).read();
     FactorGridParts parts;
     NodeFinder(csv, errors).fill(parts);
     parts.provenance = std::move(csv.provenance);

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <fmt/format.h>
 
+#include <string_view>
 #include <vector>
 
 #include "downwash/base/embedded_file.hpp"
@@ -79,9 +80,72 @@ std::string names_of_commands(const Command& program) {
     return fmt::format("{}", fmt::join(names, " | "));
 }
 
+/// Text between single quotes as fish reads it.
+std::string in_fish_quotes(std::string_view text) {
+    std::string quoted = "'";
+    for (const char letter : text) {
+        quoted += letter == '\'' || letter == '\\' ? std::string{'\\', letter} : std::string(1, letter);
+    }
+    return quoted + "'";
+}
+
+/// A line of fish's: what may follow a command.
+/// @param what as options of fish's `complete`   @param description of which the first line is shown
+std::string fish_line(const Command& command, const std::string& what, const std::string& description) {
+    return fmt::format("complete -c downwash -n {} {} -d {}\n",
+                       in_fish_quotes("test (__downwash_command) = \"" + command.full_name() + "\""), what,
+                       in_fish_quotes(description.substr(0, description.find('\n'))));
+}
+
+std::string fish_option(const Option& option) {
+    std::string text;
+    for (const std::string& name : option.names()) {
+        text += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+    }
+    const std::string offered = option.offered_words();
+    if (option.max_values() > 0) {
+        text += offered.empty() ? " -r" : " -x -a " + in_fish_quotes(offered);
+    }
+    return text.substr(1);
+}
+
+std::string fish_script(const Command& program) {
+    std::string script =
+        "# Completes the commands and options of downwash, the values of options, and file names.\n"
+        "function __downwash_command\n"
+        "    set -l given downwash\n"
+        "    for word in (commandline -opc)[2..-1]\n"
+        "        if contains -- \"$given $word\"";
+    for_each_command(program, [&script](const Command& command) {
+        script += command.is_program() ? "" : " " + in_fish_quotes(command.full_name());
+    });
+    script +=
+        "\n            set given \"$given $word\"\n"
+        "        end\n"
+        "    end\n"
+        "    echo $given\n"
+        "end\n";
+    for_each_command(program, [&script](const Command& command) {
+        for (const Command& below : command.commands()) {
+            script += fish_line(command, "-f -a " + in_fish_quotes(below.name()), below.description());
+        }
+        for (const Option& option : command.options()) {
+            if (!option.is_positional()) {
+                script += fish_line(command, fish_option(option), option.description());
+            } else if (!option.offered_words().empty()) {
+                script += fish_line(command, "-f -a " + in_fish_quotes(option.offered_words()), option.description());
+            }
+        }
+    });
+    return script;
+}
+
 }  // namespace
 
 std::string completion_script(const Command& program, const std::string& shell) {
+    if (shell == "fish") {
+        return fish_script(program);
+    }
     std::string script(DOWNWASH_EMBEDDED_FILE(downwash_completion));
     const auto fill = [&script](std::string_view gap, const std::string& text) {
         script.replace(script.find(gap), gap.size(), text);

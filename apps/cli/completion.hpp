@@ -6,7 +6,7 @@
 
 namespace downwash::cli {
 
-/// A script that completes the program's command line in a shell: "bash" or "zsh".
+/// A script that completes the program's command line in a shell: "bash", "zsh" or "fish".
 [[nodiscard]] std::string completion_script(const Command& program, const std::string& shell);
 
 }  // namespace downwash::cli

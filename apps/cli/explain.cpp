@@ -74,17 +74,43 @@ std::string explanation_of(const KeyReference& key, const std::vector<KeyReferen
     return text + (below.empty() ? "" : "  keys:\n" + below);
 }
 
-bool contains_ignoring_case(std::string_view text, std::string_view part) {
+/// Whether a word of a text, or some in a row, begin so: "margin" of "safety_margin_m", but not "y_m". Words end at
+/// what is no letter and no digit.
+bool has_word(std::string_view text, std::string_view beginning) {
     const auto are_equal = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
-    return std::search(text.begin(), text.end(), part.begin(), part.end(), are_equal) != text.end();
+    for (auto from = text.begin();; ++from) {
+        from = std::search(from, text.end(), beginning.begin(), beginning.end(), are_equal);
+        if (from == text.end()) {
+            return false;
+        }
+        if (from == text.begin() || std::isalnum(static_cast<unsigned char>(*(from - 1))) == 0) {
+            return true;
+        }
+    }
 }
 
-/// A line for each key in whose path or description the word occurs.
+std::string line_of(const KeyReference& known) {
+    return fmt::format("  {:<40} {}\n", known.info.path, known.info.description);
+}
+
+/// A line for each key in whose path or description a word begins with this one.
 std::string keys_about(std::string_view word, const std::vector<KeyReference>& all) {
     std::string text;
     for (const KeyReference& known : all) {
-        if (contains_ignoring_case(known.info.path, word) || contains_ignoring_case(known.info.description, word)) {
-            text += fmt::format("  {:<40} {}\n", known.info.path, known.info.description);
+        if (has_word(known.info.path, word) || has_word(known.info.description, word)) {
+            text += line_of(known);
+        }
+    }
+    return text;
+}
+
+/// A line for each key whose name has the word within it: "pitch_inertia_kg_m2" beside "inertia_kg_m2".
+std::string keys_with(std::string_view word, const std::vector<KeyReference>& all) {
+    std::string text;
+    for (const KeyReference& known : all) {
+        const std::string_view name = last_name(known.info.path);
+        if (!ends_with_key(name, word) && !ends_with_stem(name, word) && has_word(name, word)) {
+            text += line_of(known);
         }
     }
     return text;
@@ -112,8 +138,15 @@ ExitCode run(const ExplainArguments& given) {
             fmt::print("{}{}{}", &paths == &found.front().first ? "" : "\n", paths, explanation);
         }
         if (!found.empty()) {
+            if (const std::string others = keys_with(wanted, all); !others.empty()) {
+                fmt::print("\nOther keys with this word:\n{}", others);
+            }
             return ExitCode::done;
         }
+    }
+    if (const std::string_view remark = out_of_plane_remark(last_name(wanted)); !remark.empty()) {
+        fmt::print("No key is called '{}': {}.\n", excerpt(given.key), remark);
+        return ExitCode::done;
     }
     if (const std::string about = keys_about(wanted, all); !about.empty() && !wanted.empty()) {
         fmt::print("No key is called '{}'. It occurs in:\n{}", excerpt(given.key), about);

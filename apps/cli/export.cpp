@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,11 @@ ExportSettings settings_of(const ExportArguments& given) {
     if (!given.origin.empty()) {
         settings.origin = {given.origin[0], given.origin[1], given.origin[2], given.bearing_deg.value_or(0)};
     }
+    const auto end = std::find(mission_ends.begin(), mission_ends.end(), given.end);
+    if (end == mission_ends.end()) {
+        reject_unknown("--end", given.end, {mission_ends.begin(), mission_ends.end()});
+    }
+    settings.mission_end = static_cast<MissionEnd>(end - mission_ends.begin());
     return settings;
 }
 
@@ -34,6 +40,7 @@ void reject_useless_options(const ExportArguments& given, const ExportFormat& fo
     };
     reject_if(given.rate_hz && !format.has_rate, "--rate", "has no set-points");
     reject_if(!given.origin.empty() && !format.has_origin, "--origin", "stays in the frame of the problem");
+    reject_if(given.end != "hover" && !format.has_origin, "--end", "is no mission");
     reject_if(given.bearing_deg && given.origin.empty(), "--bearing", "needs --origin with it");
 }
 

@@ -35,6 +35,11 @@ void add_export(Command program, Action& action, ExitCode (*run)(const ExportArg
         .values(3);
     command.add_option("--bearing DEG", given.bearing_deg,
                        "compass direction of the world's x axis, clockwise from north; default 0");
+    Option end = command.add_option("--end WHAT", given.end,
+                                    "what a mission (qgc) does after the plan: hover; land, straight below; or return, "
+                                    "the autopilot's own way home, "
+                                    "which most climb for first");
+    end.offers(mission_ends);
     command.add_flag("--anyway", given.anyway, "write a plan for others to fly even if its own flight failed");
 }
 

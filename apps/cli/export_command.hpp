@@ -1,12 +1,17 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "downwash/cli/command_line.hpp"
 
 namespace downwash::cli {
+
+/// What `export --end` offers, in the order of MissionEnd.
+inline constexpr std::array<std::string_view, 3> mission_ends{"hover", "land", "return"};
 
 /// What `export` is asked for.
 struct ExportArguments {
@@ -16,6 +21,7 @@ struct ExportArguments {
     std::optional<double> rate_hz;
     std::vector<double> origin;
     std::optional<double> bearing_deg;
+    std::string end = "hover";
     bool anyway = false;  ///< write it even if the run's own flight failed
 };
 

@@ -198,7 +198,7 @@ void add_completion(Command program, Action& action) {
         program, action, "completion",
         "Print a script that completes command lines in a shell: source <(downwash completion bash)", print_completion);
     given.program = program;
-    command.add_option("SHELL", given.shell, "bash or zsh").required().one_of({"bash", "zsh"});
+    command.add_option("SHELL", given.shell, "bash, zsh or fish").required().one_of({"bash", "zsh", "fish"});
 }
 
 }  // namespace downwash::cli

@@ -77,6 +77,13 @@ void reject_unknown_option(const Command& command, std::span<char* const> words)
     }
 }
 
+/// As much of a description as fits on a line.
+std::string beginning_of(const std::string& description) {
+    constexpr std::size_t longest = 88;
+    const std::string first = description.substr(0, description.find(';'));
+    return first.size() <= longest ? first : first.substr(0, first.rfind(' ', longest)) + " ...";
+}
+
 /// CLI11 would only say that a command is missing. Rejects options that the command does not have, too.
 /// @param words what follows the command's name
 void reject_unknown_command(const Command& command, std::span<char* const> words) {
@@ -86,7 +93,12 @@ void reject_unknown_command(const Command& command, std::span<char* const> words
         return;
     }
     if (words.empty()) {
-        return;
+        std::string list;
+        for (const Command& one : known) {
+            list += fmt::format("\n  {:<11} {}", one.name(), beginning_of(one.description()));
+        }
+        throw UsageError("{}a command is missing, expected one of{}\nSee {} --help.",
+                         command.is_program() ? "" : command.full_name() + ": ", list, command.full_name());
     }
     const std::string_view word = words[0];
     std::vector<std::string_view> names;

@@ -24,6 +24,10 @@ bool is_live_terminal() {
 
 std::string text_of(const Progress& progress) {
     const std::string best = progress.best_cost ? fmt::format("best cost {:.6g}", *progress.best_cost) : "no plan yet";
+    if (progress.legs) {
+        return fmt::format("{:.1f} s, comparing orders of {} goals: {} legs flown, {}", progress.wall_s, progress.goals,
+                           *progress.legs, best);
+    }
     std::string text = fmt::format("{:.1f} s, {} iterations, {} nodes, {} rejected, {}", progress.wall_s,
                                    progress.iterations, progress.nodes, progress.rejected, best);
     if (progress.goals > 1) {

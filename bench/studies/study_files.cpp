@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "downwash/base/csv_lines.hpp"
+#include "downwash/base/csv_cell.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/studies/study_page.hpp"
 

@@ -12,10 +12,18 @@ struct GeodeticOrigin {
     double bearing_deg = 0;    ///< compass direction of the x axis, clockwise from north, -360 to 360
 };
 
+/// What a mission does after the plan.
+enum class MissionEnd {
+    hover,       ///< stays at the last goal
+    land,        ///< lands below it
+    return_home  ///< the autopilot's return: most climb first
+};
+
 /// Settings that a format may need besides the run.
 struct ExportSettings {
     std::optional<double> rate_hz;  ///< rate of set-points; empty: the rate of the controller
     std::optional<GeodeticOrigin> origin;
+    MissionEnd mission_end = MissionEnd::hover;
 };
 
 }  // namespace downwash

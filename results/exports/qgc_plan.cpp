@@ -1,5 +1,6 @@
 #include <GeographicLib/LocalCartesian.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -16,12 +17,37 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int takeoff_command = 22;         // MAV_CMD_NAV_TAKEOFF
-constexpr int waypoint_command = 16;        // MAV_CMD_NAV_WAYPOINT
+constexpr int waypoint_command = 16;       // MAV_CMD_NAV_WAYPOINT
+constexpr int return_command = 20;         // MAV_CMD_NAV_RETURN_TO_LAUNCH
+constexpr int land_command = 21;           // MAV_CMD_NAV_LAND
+constexpr int takeoff_command = 22;        // MAV_CMD_NAV_TAKEOFF
+constexpr int change_speed_command = 178;  // MAV_CMD_DO_CHANGE_SPEED
+constexpr double ground_speed = 1;         // SPEED_TYPE_GROUNDSPEED
+constexpr double same_throttle = -1;
+constexpr int mission_frame = 2;            // MAV_FRAME_MISSION: a command without a place
 constexpr int relative_altitude_frame = 3;  // MAV_FRAME_GLOBAL_RELATIVE_ALT
 constexpr int relative_altitude_mode = 1;
-constexpr int px4_firmware = 12;    // MAV_AUTOPILOT_PX4
-constexpr int multirotor_type = 2;  // MAV_TYPE_QUADROTOR
+constexpr int px4_firmware = 12;  // MAV_AUTOPILOT_PX4
+
+/// MAV_TYPE of a multirotor.
+int vehicle_type(std::size_t rotors) {
+    switch (rotors) {
+        case 3:
+            return 15;  // MAV_TYPE_TRICOPTER
+        case 4:
+            return 2;  // MAV_TYPE_QUADROTOR
+        case 6:
+            return 13;  // MAV_TYPE_HEXAROTOR
+        case 8:
+            return 14;  // MAV_TYPE_OCTOROTOR
+        case 10:
+            return 35;  // MAV_TYPE_DECAROTOR
+        case 12:
+            return 29;  // MAV_TYPE_DODECAROTOR
+        default:
+            return 43;  // MAV_TYPE_GENERIC_MULTIROTOR
+    }
+}
 
 struct Geodetic {
     double latitude_deg, longitude_deg, altitude_m;
@@ -134,6 +160,79 @@ std::vector<Corner> corners_of(const RunRecord& run) {
     return way.corners;
 }
 
+/// The items of a mission.
+class Items {
+ public:
+    Items(const OnEarth& earth, const PlaneOfMotion& plane, double home_altitude_m)
+        : earth_(earth),
+          plane_(plane),
+          home_altitude_m_(home_altitude_m),
+          bearing_deg_(earth.bearing_deg(plane.heading_rad())) {}
+
+    /// @param parameters the first three
+    void add_at(const Configuration& at, int command, const std::array<double, 3>& parameters) {
+        const Geodetic place = earth_.at(plane_.to_world(at[plane::x], 0, at[plane::z]));
+        add_at(place, place.altitude_m - home_altitude_m_, command, parameters);
+    }
+
+    /// Below a place, at the altitude of home.
+    void add_landing(const Configuration& at) {
+        add_at(earth_.at(plane_.to_world(at[plane::x], 0, at[plane::z])), 0, land_command, {0, 0, 0});
+    }
+
+    /// Without a place.
+    void add(int command, const std::array<double, 7>& parameters) {
+        items_.push_back({{"autoContinue", true},
+                          {"command", command},
+                          {"doJumpId", items_.size() + 1},
+                          {"frame", mission_frame},
+                          {"params", parameters},
+                          {"type", "SimpleItem"}});
+    }
+
+    [[nodiscard]] Json take() { return std::move(items_); }
+
+ private:
+    void add_at(const Geodetic& place, double above_home_m, int command, const std::array<double, 3>& parameters) {
+        items_.push_back({{"AMSLAltAboveTerrain", nullptr},
+                          {"Altitude", above_home_m},
+                          {"AltitudeMode", relative_altitude_mode},
+                          {"autoContinue", true},
+                          {"command", command},
+                          {"doJumpId", items_.size() + 1},
+                          {"frame", relative_altitude_frame},
+                          {"params",
+                           {parameters[0], parameters[1], parameters[2], bearing_deg_, place.latitude_deg,
+                            place.longitude_deg, above_home_m}},
+                          {"type", "SimpleItem"}});
+    }
+
+    const OnEarth& earth_;
+    const PlaneOfMotion& plane_;
+    double home_altitude_m_, bearing_deg_;
+    Json items_ = Json::array();
+};
+
+Json items_of(const RunRecord& run, const OnEarth& earth, const ExportSettings& settings) {
+    constexpr double acceptance_radius_m = 0.2;
+    const std::vector<Corner> corners = corners_of(run);
+    Items items(earth, run.problem.plane, settings.origin->altitude_m);
+    items.add_at(corners.front().at, takeoff_command, {0, 0, 0});
+    // The hover speed of a mission only feeds estimates of its time.
+    items.add(change_speed_command, {ground_speed, run.problem.motion.max_speed_m_s, same_throttle, 0, 0, 0, 0});
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        if (i > 0 || corners[i].hold_s > 0) {
+            items.add_at(corners[i].at, waypoint_command, {corners[i].hold_s, acceptance_radius_m, 0});
+        }
+    }
+    if (settings.mission_end == MissionEnd::land) {
+        items.add_landing(corners.back().at);
+    } else if (settings.mission_end == MissionEnd::return_home) {
+        items.add(return_command, {});
+    }
+    return items.take();
+}
+
 }  // namespace
 
 std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
@@ -141,35 +240,6 @@ std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
         throw_input_error("a mission needs to know where the scene lies: give --origin LATITUDE LONGITUDE ALTITUDE");
     }
     check(*settings.origin);
-    const std::vector<Corner> corners = corners_of(run);
-    const OnEarth earth(*settings.origin);
-    const double bearing_deg = earth.bearing_deg(run.problem.plane.heading_rad());
-    Json items = Json::array();
-    for (const Corner& corner : corners) {
-        const Vector3 world_m = run.problem.plane.to_world(corner.at[plane::x], 0, corner.at[plane::z]);
-        const Geodetic place = earth.at(world_m);
-        const double above_home_m = place.altitude_m - settings.origin->altitude_m;
-        const auto add = [&](int command, double hold_s, double acceptance_radius_m) {
-            items.push_back({{"AMSLAltAboveTerrain", nullptr},
-                             {"Altitude", above_home_m},
-                             {"AltitudeMode", relative_altitude_mode},
-                             {"autoContinue", true},
-                             {"command", command},
-                             {"doJumpId", items.size() + 1},
-                             {"frame", relative_altitude_frame},
-                             {"params",
-                              {hold_s, acceptance_radius_m, 0., bearing_deg, place.latitude_deg, place.longitude_deg,
-                               above_home_m}},
-                             {"type", "SimpleItem"}});
-        };
-        const bool is_first = items.empty();
-        if (is_first) {
-            add(takeoff_command, 0, 0);
-        }
-        if (!is_first || corner.hold_s > 0) {
-            add(waypoint_command, corner.hold_s, 0.2);
-        }
-    }
     const GeodeticOrigin& home = *settings.origin;
     const Json plan{{"fileType", "Plan"},
                     {"geoFence", {{"circles", Json::array()}, {"polygons", Json::array()}, {"version", 2}}},
@@ -179,9 +249,9 @@ std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
                       {"firmwareType", px4_firmware},
                       {"globalPlanAltitudeMode", relative_altitude_mode},
                       {"hoverSpeed", run.problem.motion.max_speed_m_s},
-                      {"items", std::move(items)},
+                      {"items", items_of(run, OnEarth(home), settings)},
                       {"plannedHomePosition", {home.latitude_deg, home.longitude_deg, home.altitude_m}},
-                      {"vehicleType", multirotor_type},
+                      {"vehicleType", vehicle_type(run.problem.robot.rotors.positions_m.size())},
                       {"version", 2}}},
                     {"rallyPoints", {{"points", Json::array()}, {"version", 2}}},
                     {"version", 1}};

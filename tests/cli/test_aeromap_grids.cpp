@@ -102,7 +102,7 @@ TEST_CASE("A grid or a table of the vehicle that cannot be written is rejected b
 TEST_CASE("Any bytes in a file become JSON that can be read, and every line of errors names the program") {
     const Workspace work;
     write_file(work / "grid.csv", "# note: \xff!\nx_m,z_m,factor\n0,0,1\n1,0,1\n0,1,1\n1,1,1\n");
-    CHECK(work.json("aeromap info", work / "grid.csv").at("provenance").at(0).at("value") == "\xef\xbf\xbd!");
+    CHECK(work.json("aeromap info", work / "grid.csv").at("provenance").at(0).at("value") == "\xc3\xbf!");
     write_file(work / "data.csv", "source,surface,z_over_r,thrust_ratio\nb\xff,ground,0.5,1.3\nb\xff,ground,1,1.1\n");
     CHECK_FALSE(work.json("aeromap compare", work / "data.csv").empty());
     write_file(work.in_run("grid.csv"), "x_m,z_m,factor\n0,0,a\n1,0,b\n");

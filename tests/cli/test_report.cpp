@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <sstream>
 #include <string>
 
 #include "program.hpp"
@@ -92,6 +93,12 @@ TEST_CASE("Keys are explained from the table that reads them") {
         CHECK_THAT(work.succeed(command).out,
                    Contains("No key is called") && Contains("planner.safety_margin_m") && Contains("least clearance"));
     }
+    // A word finds the names that have it within them, too; but not in the middle of another word.
+    CHECK_THAT(work.succeed("explain inertia").out,
+               Contains("robot.arm.inertia_kg_m2") && Contains("robot.multirotor.pitch_inertia_kg_m2"));
+    CHECK_THAT(work.succeed("explain y_m").out,
+               Contains("No key is called 'y_m': ") && Contains("vertical plane") && !Contains("safety_margin_m"));
+    CHECK_THAT(work.succeed("explain goal.end_effector.y_m").out, Contains("environment.plane"));
     check_rejected(work.run("explain safety_margn_m"), "did you mean 'safety_margin_m'?");
     check_rejected(work.run("explain boiler"), "`downwash check --schema problem` prints all keys");
 }
@@ -121,7 +128,7 @@ TEST_CASE("Schemas, manual pages and completions come from the same tables") {
     CHECK(work.text("man/downwash-aeromap-plot.1") == work.run("manual aeromap plot").out);
     CHECK(work.text("man/downwash.1") == work.run("manual").out);
     CHECK(work.run("manual solve --all man").code == 2);
-    CHECK(work.run("completion fish").code == 2);
+    CHECK(work.run("completion elvish").code == 2);
 }
 
 TEST_CASE("Completions offer commands, options, what options take, and files, in bash and zsh") {
@@ -181,6 +188,35 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
     }
 }
 
+TEST_CASE("Completions for fish offer commands, options and what options take") {
+    const Workspace work;
+    const std::string script = work.run("completion fish").out;
+    const std::string in_solve = "complete -c downwash -n 'test (__downwash_command) = \"downwash solve\"' ";
+    CHECK_THAT(script, Contains("complete -c downwash -n 'test (__downwash_command) = \"downwash\"' -f -a 'solve' -d ") &&
+                           Contains(in_solve + "-l seed -r -d ") &&
+                           Contains(in_solve + "-l variant -x -a 'mp-arm mp-arm-da mp-arm-ada' -d ") &&
+                           Contains("\"downwash aeromap plot\"") && Contains(in_solve + "-l out -s o -r "));
+    if (std::system("command -v fish >/dev/null") != 0) {
+        return;
+    }
+    write_file(work / "script", script + R"(
+complete -C 'downwash sol'
+complete -C 'downwash aeromap q'
+complete -C 'downwash solve --see'
+complete -C 'downwash solve --variant mp-arm-d'
+complete -C 'downwash completion fi'
+)");
+    REQUIRE(std::system(("HOME='" + work.path().string() + "' fish -N '" + (work / "script").string() + "' >'" +
+                         (work / "offered").string() + "'")
+                            .c_str()) == 0);
+    std::istringstream lines(read_file(work / "offered"));
+    std::string words;
+    for (std::string line; std::getline(lines, line);) {
+        words += line.substr(0, line.find('\t')) + "|";
+    }
+    CHECK(words == "solve|query|--seed|mp-arm-da|fish|");
+}
+
 TEST_CASE("What cannot be reported or exported is rejected with a remedy") {
     const SolvedWorkspace work;
     for (const auto& [arguments, reason] :
@@ -191,6 +227,8 @@ TEST_CASE("What cannot be reported or exported is rejected with a remedy") {
           {"export flown --format roz", "did you mean 'ros'?"},
           {"export flown --format qgc", "give --origin LATITUDE LONGITUDE ALTITUDE"},
           {"export flown --format csv --rate 0", "the rate is 0 Hz"},
+          {"export flown --format qgc --origin 47 8 400 --end rest", "expected hover, land or return"},
+          {"export flown --format glb --end land", "--end: the format glb is no mission"},
           {"export flown --format glb --rate 5", "--rate: the format glb has no set-points"},
           {"export flown", "--format"}}) {
         CAPTURE(arguments);

@@ -57,6 +57,14 @@ TEST_CASE("A command whose program is not there says how to build it, after its 
     CHECK_THAT(run_alone("study no-such-study"), Contains("there is no command 'study no-such-study'"));
 }
 
+TEST_CASE("The program alone, and a group of commands alone, list their commands") {
+    const Workspace work;
+    check_rejected(work.run(""), "downwash: a command is missing, expected one of");
+    CHECK_THAT(work.run("").err, Contains("  solve       Plan") && Contains("  completion  ") &&
+                                     Contains("See downwash --help."));
+    CHECK_THAT(work.run("aeromap").err, Contains("downwash aeromap: a command is missing") && Contains("  query "));
+}
+
 TEST_CASE("Bad usage ends with 2 and says why on standard error alone") {
     const Workspace work;
     write_file(work / "plan.json", "{}");

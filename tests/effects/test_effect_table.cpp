@@ -203,40 +203,41 @@ TEST_CASE("A table is read from rows in any order") {
                Equals(std::vector{1.2, 1.1, 0.95, 1.0}));
     const auto plain = parse_effect_table("z_over_r,factor\n2,1.1\n1,1.5\n", "t.csv");
     CHECK_FALSE(plain->depends_on_d());
+    // With the index that pandas writes, of a spreadsheet with decimal commas.
+    CHECK(parse_effect_table(";z_over_r;factor\n0;1;1,5\n1;2;1,1\n", "t.csv")->at()(1) == 1.5);
+    CHECK(parse_effect_table("Unnamed: 0,z_over_r,factor\n0,1,1.5\n1,2,1.1\n", "t.csv")->at()(1) == 1.5);
     CHECK(plain->at()(1) == 1.5);
 }
 
 TEST_CASE("Tables that cannot be used are errors with their line") {
     const std::string head = "z_over_r,factor\n";
     const std::string with_d = "z_over_r,d_over_r,factor\n";
-    const std::string columns = "expected the columns z_over_r,factor or z_over_r,d_over_r,factor";
-    const std::string no_factor = "; expected a number from 0 to 100";
+    const std::string columns = "expected z_over_r,factor or z_over_r,d_over_r,factor";
+    const std::string no_factor = ": expected a number from 0 to 100";
     for (const auto& [text, error] : {
              std::pair<std::string, std::string>{
-                 "", ": holds no table; expected a line with the names of the columns, then rows"},
-             {"# nothing\n", ": holds no table; expected a line with the names of the columns, then rows"},
-             {head, ":1: no rows follow; expected a table of two or more distances"},
-             {"#\nz_over_r;factor\n1;2\n", ":2: " + columns},
-             {"z_over_r,factor,rpm\n1,2,3\n", ":1: " + columns},
-             {"z_over_r,z_over_r\n",
-              ":1: the column 'z_over_r' occurs twice; expected the names of the columns, separated by commas"},
-             {head + "1,1.2,3\n", ":2: holds 3 cells; expected 2, one for each column of line 1"},
-             {head + "1,1.2\n\n2,\n", ":4: factor is ''" + no_factor},
+                 "", ": holds no table: expected a line with the names of its columns, then rows"},
+             {"# nothing\n", ": holds no table: expected a line with the names of its columns, then rows"},
+             {head, ":1: no rows follow: expected a table of two or more distances"},
+             {"#\nz_over_r:factor\n1:2\n", ":2: has the columns 'z_over_r:factor': " + columns},
+             {"z_over_r,factor,rpm\n1,2,3\n", ":1: has the columns 'z_over_r, factor, rpm': " + columns},
+             {"z_over_r,z_over_r\n", ":1:10: the column 'z_over_r' occurs twice"},
+             {head + "1,1.2,3\n", ":2: holds 3 cells: expected 2, one for each column of line 1"},
+             {head + "1,1.2\n\n2,\n", ":4:3: factor is ''" + no_factor},
              {head + "1,nan\n2,inf\n3,-0.1\n4,101\n5,1.2x\n",
-              ":2: factor is 'nan'" + no_factor + "\nt.csv:3: factor is 'inf'" + no_factor +
-                  "\nt.csv:4: factor is '-0.1'" + no_factor + "\nt.csv:5: factor is '101'" + no_factor +
-                  "\nt.csv:6: factor is '1.2x'" + no_factor},
-             {head + "-1,1.2\n2,1\n", ":2: z_over_r is '-1'; expected a number from 0 to 1000"},
-             {head + "\"1\",1.2\n", ":2: holds a quotation mark; expected plain cells, separated by commas"},
-             {head + "1,1.2\n1.0,1.1\n", ": z_over_r is 1 in every row; expected two or more distances"},
+              ":2:3: factor is 'nan'" + no_factor + "\nt.csv:3:3: factor is 'inf'" + no_factor +
+                  "\nt.csv:4:3: factor is '-0.1'" + no_factor + "\nt.csv:5:3: factor is '101'" + no_factor +
+                  "\nt.csv:6:3: factor is '1.2x'" + no_factor},
+             {head + "-1,1.2\n2,1\n", ":2:1: z_over_r is '-1': expected a number from 0 to 1000"},
+             {head + "1,1.2\n1.0,1.1\n", ": z_over_r is 1 in every row: expected two or more distances"},
              {head + "1,1.2\n2,1.1\n1.0,1.3\n", ":4: z_over_r 1 is already in line 2"},
              {head + "1,1.2\n1.0000001,1.1\n",
-              ":3: z_over_r 1.0000001 is hardly above 1; expected steps of at least 1e-6, or exactly the same "
+              ":3: z_over_r 1.0000001 is hardly above 1: expected steps of at least 1e-6, or exactly the same "
               "number"},
              {with_d + "1,1,1\n1,2,1\n2,1,1\n",
-              ": has no row for z_over_r 2, d_over_r 2; expected one for every combination of distances"},
+              ": has no row for z_over_r 2, d_over_r 2: expected one for every combination of distances"},
              {with_d + "1,1,1\n2,1,1\n",
-              ": d_over_r is 1 in every row; expected two or more distances, or no such column"},
+              ": d_over_r is 1 in every row: expected two or more distances, or no such column"},
          }) {
         CHECK(error_of(text) == "t.csv" + error);
     }
@@ -244,7 +245,7 @@ TEST_CASE("Tables that cannot be used are errors with their line") {
 
 TEST_CASE("Long files are errors before they fill the memory, and not every error is told") {
     CHECK(error_of("z_over_r,factor\n" + repeated("1,1\n", 100'001)) ==
-          "t.csv:100002: is row 100001; expected at most 100000");
+          "t.csv:100002: is row 100001: expected at most 100000");
     const std::string errors = error_of("z_over_r,factor\n" + repeated("x,1\n", 1000));
     CHECK(std::count(errors.begin(), errors.end(), '\n') == 19);
     // Distances that make a grid of 2.5e9 nodes where there are 50000 rows.
@@ -252,7 +253,7 @@ TEST_CASE("Long files are errors before they fill the memory, and not every erro
     for (int i = 0; i < 50'000; ++i) {
         sparse += std::to_string(i * 0.01) + "," + std::to_string(i * 0.1) + ",1\n";
     }
-    CHECK_THAT(error_of(sparse), Catch::Contains("has no row for z_over_r 0, d_over_r 0.1;"));
+    CHECK_THAT(error_of(sparse), Catch::Contains("has no row for z_over_r 0, d_over_r 0.1:"));
 }
 
 TEST_CASE("Tables made in a program are checked too") {

@@ -234,6 +234,8 @@ class Missions(ReadByOthers):
             plans_of_qgc.validate(plan)
             items = plan["mission"]["items"]
             self.assertEqual([item["doJumpId"] for item in items], list(range(1, len(items) + 1)))
+            self.assertEqual(items[1]["params"][:2], [1, run.problem["motion"]["max_speed_m_s"]])
+            del items[1]
             self.assertEqual(plan["mission"]["plannedHomePosition"], list(origin))
             for item, (x_m, z_m) in zip(items, corners, strict=True):
                 *_, yaw_deg, latitude_deg, longitude_deg, height_m = item["params"]
@@ -243,6 +245,16 @@ class Missions(ReadByOthers):
                 self.assertEqual(item["Altitude"], height_m)
             end_s = run.flight["t_s"][-1] - run.solution["plan"]["reference"][-1]["t_s"]
             self.near(items[-1]["params"][0], end_s, 1e-9)
+
+    def test_missions_end_as_they_are_asked_to(self):
+        plans_of_qgc = validator(loaded(f"{HERE}/qgc_plan.schema.json"))
+        run = run_of("culvert")
+        hover = self.mission(run, (47, 8, 100), 30)["mission"]["items"]
+        for end, command in (("land", 21), ("return", 20)):
+            plan = loaded(run.export("qgc", "--origin", "47", "8", "100", "--bearing", "30", "--end", end))
+            plans_of_qgc.validate(plan)
+            self.assertEqual(plan["mission"]["items"][:-1], hover)
+            self.assertEqual(plan["mission"]["items"][-1]["command"], command)
 
     def test_the_documented_format_refuses_every_misspelt_key(self):
         plans_of_qgc = validator(loaded(f"{HERE}/qgc_plan.schema.json"))

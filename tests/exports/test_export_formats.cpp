@@ -60,8 +60,21 @@ RunRecord resting_record() {
 }
 
 /// To the north from 47 degrees north.
-json mission_of(const RunRecord& run) {
-    return json::parse(written("qgc", run, at(47, 8, 0)))["mission"];
+json mission_of(const RunRecord& run, MissionEnd end = MissionEnd::hover) {
+    ExportSettings settings = at(47, 8, 0);
+    settings.mission_end = end;
+    return json::parse(written("qgc", run, settings))["mission"];
+}
+
+/// The items of a mission that have a place: all but commands such as that of the speed.
+json placed_items(const json& mission) {
+    json placed = json::array();
+    for (const json& item : mission["items"]) {
+        if (item["frame"] == 3) {
+            placed.push_back(item);
+        }
+    }
+    return placed;
 }
 
 pugi::xml_node piece_of(pugi::xml_document& document, const char* format) {
@@ -107,7 +120,7 @@ TEST_CASE("a mission lies where the scene does") {
     const double bearing_deg = GENERATE(0., 90., 210.);
     const json plan = json::parse(written("qgc", run, at(47, 8, bearing_deg)));
     CHECK(plan["fileType"] == "Plan");
-    const json& items = plan["mission"]["items"];
+    const json items = placed_items(plan["mission"]);
     REQUIRE(items.size() == run.plan->reference.size());
     CHECK(items[0]["command"] == 22);
     constexpr double earth_radius_m = 6.37e6;
@@ -123,7 +136,6 @@ TEST_CASE("a mission lies where the scene does") {
         CHECK(params[6].get<double>() == Approx(corner[plane::z] + sagitta_m).margin(1e-7));
         CHECK(items[i]["Altitude"] == params[6]);
         CHECK(params[3].get<double>() == Approx(bearing_deg).margin(1e-9));
-        CHECK(items[i]["doJumpId"] == i + 1);
     }
     CHECK(items.back()["params"][0].get<double>() == Approx(run.flight.find("t_s")->back() - run.plan->duration_s()));
     CHECK(plan["mission"]["plannedHomePosition"] == json({47., 8., 100.}));
@@ -141,7 +153,7 @@ TEST_CASE("a mission climbs straight up where the plan does, and holds where the
         run.plan->reference[i].tick += 700;
     }
     run.plan->reference.insert(run.plan->reference.begin() + 2, held);
-    const json held_on_its_way = mission_of(run)["items"];
+    const json held_on_its_way = placed_items(mission_of(run));
     REQUIRE(held_on_its_way.size() == run.plan->reference.size() - 1);
     CHECK(held_on_its_way[1]["params"][0].get<double>() == Approx(700 * run.plan->tick_s));
 
@@ -150,14 +162,13 @@ TEST_CASE("a mission climbs straight up where the plan does, and holds where the
                            {300, at_rest({-4, 2, 0})},
                            {800, at_rest({-4, 3.5, 0})},
                            {1800, at_rest({1, 3.5, 0})}};
-    const json items = mission_of(run)["items"];
+    const json items = placed_items(mission_of(run));
     REQUIRE(items.size() == 4);  // take-off, the stop of 3 s above it, the climb, the leg
     const int commands[] = {22, 16, 16, 16};
     const double heights_m[] = {2, 2, 3.5, 3.5};
     for (std::size_t i = 0; i < 4; ++i) {
         CHECK(items[i]["command"] == commands[i]);
         CHECK(items[i]["params"][6].get<double>() == Approx(heights_m[i]).margin(2e-6));
-        CHECK(items[i]["doJumpId"] == i + 1);
     }
     CHECK(items[0]["params"][0] == 0);
     CHECK(items[1]["params"][0].get<double>() == Approx(3));
@@ -167,6 +178,44 @@ TEST_CASE("a mission climbs straight up where the plan does, and holds where the
     CHECK(north_m(3) == Approx(north_m(0) + 5).margin(0.01));
 }
 
+TEST_CASE("a mission tells the autopilot the speed of the plan after take-off") {
+    RunRecord run = resting_record();
+    run.problem.motion.max_speed_m_s = 1.25;
+    const json items = mission_of(run)["items"];
+    CHECK(items[1]["command"] == 178);  // MAV_CMD_DO_CHANGE_SPEED
+    // SPEED_TYPE_GROUNDSPEED, the speed, no change of throttle.
+    CHECK(items[1]["params"] == json({1., 1.25, -1., 0., 0., 0., 0.}));
+    CHECK(items[1]["frame"] == 2);  // MAV_FRAME_MISSION
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        CHECK(items[i]["doJumpId"] == i + 1);
+    }
+}
+
+TEST_CASE("a mission ends in a hover unless it is to land or to return") {
+    const RunRecord run = resting_record();
+    const json hovering = mission_of(run)["items"];
+    CHECK(hovering.back()["command"] == 16);
+    json landing = mission_of(run, MissionEnd::land)["items"];
+    CHECK(landing.back()["command"] == 21);
+    CHECK(landing.back()["params"][4] == hovering.back()["params"][4]);
+    CHECK(landing.back()["params"][5] == hovering.back()["params"][5]);
+    CHECK(landing.back()["params"][6] == 0);
+    landing.erase(landing.size() - 1);
+    CHECK(landing == hovering);
+    const json returning = mission_of(run, MissionEnd::return_home)["items"];
+    CHECK(returning.size() == hovering.size() + 1);
+    CHECK(returning.back()["command"] == 20);
+}
+
+TEST_CASE("a mission is for a vehicle of as many rotors") {
+    RunRecord run = resting_record();
+    // MAV_TYPE_QUADROTOR, _HEXAROTOR, _OCTOROTOR, _TRICOPTER, _DODECAROTOR, _GENERIC_MULTIROTOR
+    for (const auto& [rotors, type] : {std::pair{4, 2}, {6, 13}, {8, 14}, {3, 15}, {12, 29}, {16, 43}}) {
+        run.problem.robot.rotors.positions_m.resize(static_cast<std::size_t>(rotors));
+        CHECK(mission_of(run)["vehicleType"] == type);
+    }
+}
+
 TEST_CASE("a mission keeps to the curves of a plan that passes its knots at speed") {
     RunRecord run = record();
     run.plan->tick_s = 0.01;
@@ -174,7 +223,7 @@ TEST_CASE("a mission keeps to the curves of a plan that passes its knots at spee
     passing.velocity[0] = 1;
     passing.velocity[1] = 1;
     run.plan->reference = {{0, at_rest({-4, 3, 0})}, {500, passing}, {1000, at_rest({1, 8, 0})}};
-    const json items = mission_of(run)["items"];
+    const json items = placed_items(mission_of(run));
     REQUIRE(items.size() > 6);
     CHECK(items.size() < 100);
     std::vector<std::array<double, 2>> corners;

@@ -91,5 +91,5 @@ TEST_CASE("Walls at one distance only, or without a share, are refused") {
                       Catch::Contains("w.csv:1: has no column moment_over_thrust_radius"));
     CHECK_THROWS_WITH(
         parse_wall_measurements("distance_over_r,force_over_thrust,moment_over_thrust_radius\n0.5,0,0\n", "w.csv"),
-        Catch::Contains("w.csv:2: "));
+        Catch::Contains("w.csv:2:1: "));
 }

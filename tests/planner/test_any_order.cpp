@@ -53,6 +53,30 @@ TEST_CASE("targets in any order are visited in the order that costs least, each 
     }
 }
 
+TEST_CASE("progress of targets in any order counts the work of all searches, and tells of legs") {
+    Problem problem = line_of_targets(Variant::mp_arm_ada);
+    problem.planner.max_iterations = 2400;
+    SolveOptions options;
+    Progress last;
+    bool has_told_of_legs = false;
+    options.on_progress = [&](const Progress& now) {
+        CHECK(now.iterations >= last.iterations);
+        CHECK(now.nodes >= last.nodes);
+        CHECK(now.rejected >= last.rejected);
+        CHECK(now.goals == 4);
+        has_told_of_legs = has_told_of_legs || now.legs.value_or(0) > 0;
+        last = now;
+    };
+    const Solution solution = solve(problem, options);
+    CHECK(has_told_of_legs);
+    CHECK(last.nodes > 0);
+    std::uint64_t rejected = 0;
+    for (const auto& [cause, count] : solution.planning.rejected) {
+        rejected += count;
+    }
+    CHECK(last.rejected <= rejected);
+}
+
 TEST_CASE("targets in any order come out the same byte by byte on one thread and on two") {
     Problem problem = line_of_targets(Variant::mp_arm_ada);
     problem.return_to = place(-4, 2);

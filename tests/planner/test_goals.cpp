@@ -218,6 +218,7 @@ TEST_CASE("a tour that is interrupted after its first whole way gives a whole wa
         SolveOptions options;
         options.stop = stop.get_token();
         bool has_plan = false;
+        std::uint64_t nodes = 0, rejected = 0;
         int left = reports_to_go;
         options.on_plan = [&](const FoundPlan&) {
             has_plan = true;
@@ -229,6 +230,10 @@ TEST_CASE("a tour that is interrupted after its first whole way gives a whole wa
             CHECK(progress.goals == 3);
             CHECK(progress.goal >= 1);
             CHECK(progress.goal <= 3);
+            CHECK(progress.nodes >= nodes);
+            CHECK(progress.rejected >= rejected);
+            nodes = progress.nodes;
+            rejected = progress.rejected;
             CHECK(progress.best_cost.has_value() == has_plan);
             if (has_plan && --left <= 0) {
                 stop.request_stop();

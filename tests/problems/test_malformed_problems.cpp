@@ -38,10 +38,15 @@ const Edit edits[] = {
      "13:37: uncertainty.aero.ceiling_scale has an sd so large that 3 of it leave the range: expected 0 or {sd: "
      "number} "
      "or {range: [low, high]} from -0.9 to 0.9"},
+    {"x_m: 3, z_m: 2.5", "x_m: 3, y_m: 0.5, z_m: 2.5",
+     "14:26: unknown key 'y_m' in goal.end_effector: vehicle and arm move in a vertical plane, in which x_m and z_m "
+     "are "
+     "coordinates; environment.plane (origin_m, heading_deg) places it in the scene"},
     {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {weather: {}}",
      "13:15: unknown key 'weather' in uncertainty: expected aero, vehicle, sensing or wind"},
     {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {vehicle: {delay_s: {range: [0, 0.2]}}}",
-     "13:34: uncertainty.vehicle.delay_s reaches from 0 to 0.2 s: expected 0 to 3 control ticks, 0.03 s"},
+     "13:34: uncertainty.vehicle.delay_s reaches from 0 to 0.2 s: expected 0 to 3 control ticks, 0.03 s; a "
+     "controller.rate_hz of 15 or less would do, or a narrower {range: [low, high]} of delays"},
     {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {}\nplanner: {max_failure_probability: 0}",
      "14:36: planner.max_failure_probability is 0: expected a number from 0.0001 to 0.5\n18:1: planner is written "
      "twice: "
@@ -232,10 +237,7 @@ const Edit edits[] = {
     {"seed: 1", "seed: 1, parameters: {pruning_radius: 0.2}",
      "16:94: planner.parameters.pruning_radius has a meaning only with sst: remove it"},
     {"seed: 1", "seed: 1, <<: 2",
-     "16:81: unknown key '<<' in planner: expected variant, algorithm, objective, time_limit_s, max_iterations, seed, "
-     "safety_margin_m, collision_checker, max_saturation, max_pitch_rate_deg_s, check_execution, worlds, certify, "
-     "max_failure_probability, "
-     "confidence or parameters"},
+     "16:81: merge keys (<<) are not read: expected the keys themselves; an alias (*name) may stand for a whole value"},
 };
 
 }  // namespace

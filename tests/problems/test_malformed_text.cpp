@@ -53,6 +53,33 @@ TEST_CASE("bytes that are no text are errors at their place") {
     CHECK(errors_of_text("start:\n\tx_m: 1\n") == "problem.yaml:2:1: a tab in the indentation: expected spaces");
 }
 
+TEST_CASE("lines may end in any way") {
+    std::string good(good_problem);
+    for (const char* end : {"\r\n", "\r"}) {
+        std::string text;
+        for (const char c : good) {
+            text += c == '\n' ? end : std::string(1, c);
+        }
+        CHECK(errors_of_text(text) == "sound");
+        CHECK(errors_of_text("# by hand" + std::string(end) + text) == "sound");
+        // The line of an error is the same.
+        CHECK(errors_of_text(text + "wrong: 1" + end) == errors_of_text(good + "wrong: 1\n"));
+    }
+}
+
+TEST_CASE("merge keys are named as what is not read, and hide no other error") {
+    const std::string merged = edited(good_problem, "start: {", "start: {<<: {x_m: 1}, ");
+    CHECK(
+        errors_of_text(merged) ==
+        "problem.yaml:12:9: merge keys (<<) are not read: expected the keys themselves; an alias (*name) may stand for "
+        "a whole value");
+    // What it would have brought is not missing.
+    const std::string brought =
+        edited(good_problem, "box: {size_m: [30, 20, 1], ", "box: {<<: {size_m: [30, 20, 1]}, ");
+    CHECK(errors_of_text(brought).find("missing") == std::string::npos);
+    CHECK(errors_of_text(brought).find("merge keys (<<) are not read") != std::string::npos);
+}
+
 TEST_CASE("files that cannot be read are errors") {
     const TestFolder folder;
     CHECK(folder.errors_of("missing.yaml") == "missing.yaml:1:1: cannot be read: there is no such file");

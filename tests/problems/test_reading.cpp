@@ -222,6 +222,13 @@ TEST_CASE("an arm that does not move has one angle, and a start at another one i
                Catch::Matchers::Contains("start.arm_deg is beyond the arm's limits"));
 }
 
+TEST_CASE("the controller that the error of a missing one proposes flies with its defaults") {
+    const std::string_view own = "controller:\n  position: {kp: 2, kd: 2.6}\n  attitude: {kp: 8, rate_kp: 20}\n  arm: {kp: "
+                                 "30, kd: 11}\n  max_tilt_deg: 35\n";
+    const TestFolder folder;
+    CHECK(folder.errors_of(good_problem, edited(good_robot, own, "controller: {type: cascaded-pid}\n")) == "sound");
+}
+
 TEST_CASE("every shipped problem is sound") {
     for (const auto& entry : std::filesystem::directory_iterator(DOWNWASH_PROBLEMS)) {
         if (entry.path().extension() == ".yaml") {

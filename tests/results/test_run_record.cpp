@@ -164,13 +164,16 @@ TEST_CASE("tables of numbers are read strictly") {
     CHECK(table.find("d") == nullptr);
     CHECK(read_number_table("a,b\n", "file.csv", {"a", "b"}).rows() == 0);
 
-    CHECK(table_error("") == "file.csv: the file is empty: expected a line of column names");
+    CHECK(table_error("") == "file.csv: holds no table: expected a line with the names of its columns, then rows");
     CHECK(table_error("a,b,<c>\n") == "file.csv:1:5: '<c>' is no name of a column: expected letters, digits and '_'");
     CHECK(table_error("a,c\n") == "file.csv:1: there is no column 'b'");
-    CHECK(table_error("a,b,a\n") == "file.csv:1:5: the column 'a' is there twice");
-    CHECK(table_error("a,b\n1,2,3\n") == "file.csv:2: 3 cells under 2 column names");
-    CHECK(table_error("a,b\n1,2\n1,two\n") == "file.csv:3:3: 'two' is not a finite number");
-    CHECK(table_error("a,b\n1,nan\n") == "file.csv:2:3: 'nan' is not a finite number");
+    CHECK(table_error("a,b,a\n") == "file.csv:1:5: the column 'a' occurs twice");
+    CHECK(table_error("a,b\n1,2,3\n") ==
+          "file.csv:2: holds 3 cells: expected 2, one for each column of line 1; if its numbers have decimal commas, "
+          "separate "
+          "the columns by ';' or quote the numbers");
+    CHECK(table_error("a,b\n1,2\n1,two\n") == "file.csv:3:3: b is 'two': expected a finite number");
+    CHECK(table_error("a,b\n1,nan\n") == "file.csv:2:3: b is 'nan': expected a finite number");
     std::string many = "a,b";
     for (int i = 2; i <= 200; ++i) {
         many += ",c" + std::to_string(i);

@@ -9,11 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from .problem import Path, Problem
 
 __all__ = ["AeroMap", "factor", "is_flyable"]
 
 
+@checked()
 def factor(
     problem: Problem, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None
 ) -> npt.NDArray[np.float64]:
@@ -27,6 +29,7 @@ def factor(
     return _core.factor(problem._core, np.asarray(points, dtype=np.float64), rotor, threads or 0)
 
 
+@checked()
 def is_flyable(
     problem: Problem, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None
 ) -> npt.NDArray[np.bool_]:
@@ -45,6 +48,7 @@ class AeroMap:
         self._core = core
 
     @classmethod
+    @checked()
     def build(
         cls,
         problem: Problem,
@@ -65,6 +69,7 @@ class AeroMap:
         return cls(_core.AeroMap.build(problem._core, threads or 0, folder, on_progress, stop))
 
     @classmethod
+    @checked()
     def read(cls, file: Path, problem: Problem) -> AeroMap:
         """Reads what `write` wrote. Raises InputError unless it is the map of this problem."""
         return cls(_core.AeroMap.read(os.fspath(file), problem._core))
@@ -73,6 +78,7 @@ class AeroMap:
         """Writes what is filled of the map: all of it, unless a search filled it. Machines of the same byte order can read it; `downwash aeromap build` writes for others."""
         self._core.write(os.fspath(file))
 
+    @checked()
     def factor(self, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None) -> npt.NDArray[np.float64]:
         """K, interpolated within 0.01 of the direct evaluation, at hubs in plane coordinates x, z: (n, 2) [m].
 
@@ -80,10 +86,12 @@ class AeroMap:
         """
         return self._core.factor(np.asarray(points, dtype=np.float64), rotor, threads or 0)
 
+    @checked()
     def is_flyable(self, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None) -> npt.NDArray[np.bool_]:
         """Whether hubs in plane coordinates are inside the flyable area."""
         return self._core.is_flyable(np.asarray(points, dtype=np.float64), rotor, threads or 0)
 
+    @checked()
     def arrays(self, rotor: int = 1) -> Dict[str, npt.NDArray[np.generic]]:
         """The values of a rotor's layer: read-only arrays, made once, which keep the map alive. Fills the whole map.
 

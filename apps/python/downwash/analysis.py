@@ -8,12 +8,14 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from .problem import Problem
 from .solution import Solution, StopSignal
 
 __all__ = ["Validation", "draw_worlds", "hold", "validate"]
 
 
+@checked()
 def hold(
     problem: Problem, points: npt.ArrayLike, *, arm_deg: float | None = None, threads: int | None = None
 ) -> Dict[str, npt.NDArray[Any]]:
@@ -32,6 +34,7 @@ def hold(
     return table
 
 
+@checked()
 def draw_worlds(problem: Problem, count: int, *, seed: int | None = None) -> Dict[str, npt.NDArray[Any]]:
     """What the worlds 1 to `count` of the problem's uncertainty have otherwise than the nominal one.
 
@@ -76,6 +79,7 @@ class Validation:
         return f"<downwash.Validation {self.outcome}, {self.failures} failures of {self.record.get('runs', 0)}>"
 
 
+@checked()
 def validate(
     problem: Problem,
     solution: Solution,

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from .aeromap import factor, is_flyable
 from .problem import Problem
 from .solution import Solution
@@ -41,6 +42,7 @@ def _path(rings: Sequence[npt.NDArray[np.float64]]) -> Any:
     return Path.make_compound_path(*(Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings))
 
 
+@checked()
 def scene(problem: Problem, ax: Any = None) -> Any:
     """Draws the obstacles: filled where the plane of motion cuts them, dashed where they stand beside it."""
     from matplotlib.patches import PathPatch
@@ -59,6 +61,7 @@ def scene(problem: Problem, ax: Any = None) -> Any:
     return ax
 
 
+@checked()
 def factor_map(
     problem: Problem, ax: Any = None, *, rotor: int = 1, step_m: float | None = None, with_scene: bool = True
 ) -> Any:
@@ -109,6 +112,7 @@ def _robot(problem: Problem, x_m: float, z_m: float, pitch_rad: float, arm_rad: 
     return [*lines, np.array([joint, joint + reach])]
 
 
+@checked()
 def plan(solution: Solution, ax: Any = None, *, robots: int = 8, with_scene: bool = True) -> Any:
     """Draws the plan (dashed) and its executed flight, with the vehicle and its arm at equal intervals of time.
 

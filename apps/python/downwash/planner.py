@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from .errors import InputError, ProblemError
 from .problem import Path, Problem, _without_lines, _yaml
 from .solution import Columns, Progress, Solution, StopSignal, _teller
@@ -160,6 +161,7 @@ class Planner:
     cache: folder in which aero maps are kept; default: none
     """
 
+    @checked()
     def __init__(
         self,
         problem: Problem,
@@ -186,6 +188,7 @@ class Planner:
         """
         return _solution_of(self._core.solve(None if on_progress is None else _teller(on_progress), stop))
 
+    @checked(("goal", "time_limit_s", "max_iterations"))
     def replan(
         self,
         start: Start,
@@ -233,6 +236,7 @@ class Planner:
         core = self._core.latest()
         return None if core is None else Answer(core)
 
+    @checked()
     def predicted(self, start: Start, plan: Mapping[str, npt.ArrayLike], ticks: int) -> Start:
         """The vehicle as it will be some ticks later, by the planner's own model without noise.
 
@@ -240,6 +244,7 @@ class Planner:
         """
         return Start._of_core(self._core.predicted(start._to_core(), _knots(plan), ticks))
 
+    @checked()
     def reference_of(self, plan: Mapping[str, npt.ArrayLike], tick: int) -> ReferencePoint:
         """The reference of a plan at a tick; after its last knot that one."""
         return ReferencePoint(*self._core.reference_of(_knots(plan), tick))

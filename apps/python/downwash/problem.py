@@ -9,6 +9,7 @@ import re
 from typing import Any, Mapping, Union
 
 from . import _core
+from ._arguments import checked
 from .errors import InputError, LocatedError, ProblemError
 
 __all__ = ["Problem", "explain", "read_problem"]
@@ -85,15 +86,18 @@ class Problem:
         self._document: dict[str, Any] | None = None
 
     @classmethod
+    @checked()
     def from_text(cls, text: str, folder: Path = "") -> Problem:
         """Reads the text of a problem file. Paths in it are relative to `folder`; messages call it `<text>`."""
         return cls(_core.Problem.parse(text, os.path.join(folder, "<text>"), False))
 
     @classmethod
+    @checked()
     def from_dict(cls, document: Mapping[str, Any], folder: Path = "") -> Problem:
         """Makes a problem from what a problem file holds, as dicts and lists. Errors name keys and no lines."""
         return cls(_parsed(document, folder, False))
 
+    @checked()
     def replace(self, changes: Mapping[str, object]) -> Problem:
         """The same problem with other values: `problem.replace({"planner.seed": 3, "start.x_m": -4})`.
 
@@ -196,6 +200,7 @@ def read_problem(file: Path) -> Problem:
     return Problem(_core.Problem.read(os.fspath(file)))
 
 
+@checked()
 def explain(key: str) -> str:
     """What a key of problem files means, which values it takes, and its default."""
     known = _core.explained(key)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._arguments import checked
 from .aeromap import AeroMap
 from .problem import Path, Problem, explain
 
@@ -142,6 +143,7 @@ class Solution:
         core = _core.AeroMap.of_solution(self._core)
         return None if core is None else AeroMap(core)
 
+    @checked()
     def write(self, folder: Path, *, force: bool = False) -> None:
         """Writes the files that `downwash solve` writes.
 
@@ -157,6 +159,7 @@ class Solution:
 _PLANNER_KEYS = ("variant", "algorithm", "objective", "seed", "time_limit_s", "max_iterations", "safety_margin_m")
 
 
+@checked(_PLANNER_KEYS)
 def solve(
     problem: Problem,
     *,
@@ -230,12 +233,14 @@ def _teller(on_progress: Callable[[Progress], object]) -> Callable[..., object]:
     return lambda *figures: on_progress(Progress(*figures))
 
 
+@checked()
 def read_solution(file: Path, problem: Problem) -> Solution:
     """Reads the plan in a solution.json, or in the folder of a run, to fly it. Its flight stays None."""
     path = os.path.join(file, "solution.json") if os.path.isdir(file) else os.fspath(file)
     return Solution(_core.read_solution(path, problem._core), problem)
 
 
+@checked()
 def execute(
     problem: Problem,
     solution: Solution,

@@ -50,6 +50,18 @@ for flags in '' '-march=native'; do
     "$work/embed/embed"
 done
 
+echo "programs whose containers have another layout do not compile, with a reason"
+compiles() {
+    g++ -std=c++20 "$@" -fsyntax-only -I "$prefix/include" "$root/docs/examples/embed/main.cpp" 2>"$work/log"
+}
+for flag in -D_GLIBCXX_DEBUG -D_GLIBCXX_USE_CXX11_ABI=0; do
+    if compiles "$flag" || ! grep -q '#error "Downwash ' "$work/log"; then
+        echo "$flag: expected #error"
+        exit 1
+    fi
+done
+compiles -D_GLIBCXX_ASSERTIONS -D_FORTIFY_SOURCE=2 -O2 -funsigned-char
+
 if command -v pkg-config >/dev/null; then
     echo "the example, built by way of pkg-config"
     read -ra flags < <(PKG_CONFIG_PATH=$prefix/lib/pkgconfig pkg-config --cflags --libs downwash)
@@ -87,4 +99,6 @@ bash -c '
     COMP_WORDS=(downwash aeromap pl) COMP_CWORD=2
     _downwash
     [[ ${COMPREPLY[*]} == plot ]]' completes "$prefix/share/bash-completion/completions/downwash"
+grep -qF "complete -c downwash -n 'test (__downwash_command) = \"downwash aeromap\"' -f -a 'plot'" \
+    "$prefix/share/fish/vendor_completions.d/downwash.fish"
 [[ $(head -n 1 "$prefix/share/zsh/site-functions/_downwash") == '#compdef downwash' ]]

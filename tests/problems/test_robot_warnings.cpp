@@ -1,0 +1,88 @@
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_reader.hpp"
+
+using namespace downwash;
+using Catch::Matchers::Contains;
+
+namespace {
+
+Robot shipped() {
+    return read_robot(DOWNWASH_PROBLEMS "/robots/ars_lrm.yaml");
+}
+
+/// The warnings of a key, on one line each.
+std::vector<std::string> warnings_of(const Robot& robot, const std::string& key) {
+    std::vector<std::string> found;
+    for (const KeyError& warning : robot_warnings(robot)) {
+        if (warning.key == key) {
+            found.push_back(warning.message);
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("a shipped robot is warned of nothing") {
+    CHECK(robot_warnings(shipped()).empty());
+}
+
+TEST_CASE("rotors one above the other are warned of: the lower one counts in full") {
+    Robot robot = shipped();
+    const auto upper = robot.rotors.positions_m;
+    for (auto hub : upper) {
+        hub[2] -= 0.1;
+        robot.rotors.positions_m.push_back(hub);
+    }
+    const auto warnings = warnings_of(robot, "rotors.positions_m");
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings[0], Contains("puts the rotors 1 and 5 one above the other, one of 4 such pairs: ") &&
+                                Contains("1.2 to 1.4 times the power"));
+    // Also where the discs overlap in part only, as those of a staggered tandem.
+    Robot tandem = shipped();
+    tandem.rotors.positions_m[0] = {0.32, 0.19, 0.2};
+    tandem.rotors.positions_m[1] = {0.32, -0.19, 0.06};
+    CHECK_THAT(warnings_of(tandem, "rotors.positions_m").at(0), Contains("the rotors 1 and 2 one above the other: "));
+    tandem.rotors.positions_m[0][1] = 0.1905;
+    tandem.rotors.positions_m[1][1] = -0.1905;
+    CHECK(warnings_of(tandem, "rotors.positions_m").empty());
+    // In one plane they overlap, and are not coaxial.
+    robot = shipped();
+    robot.rotors.positions_m[0][1] = 0.1;
+    robot.rotors.positions_m[1][1] = -0.1;
+    CHECK_THAT(warnings_of(robot, "rotors.positions_m").at(0), Contains("their discs overlap"));
+}
+
+TEST_CASE("thrusts in gram-force are warned of") {
+    Robot robot = shipped();
+    robot.rotors.max_thrust_n = 2855;  // gram-force of 28 N
+    const auto warnings = warnings_of(robot, "rotors.max_thrust_n");
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0] ==
+          "is 2855, and all rotors lift 235 times the weight: expected newtons of one rotor; if these are gram-force, "
+          "as in data sheets, it is 28 N");
+    // Four rotors of 240 N lift 4.95 kg 19.8 times, racing vehicles up to 15 times.
+    robot.rotors.max_thrust_n = 240;
+    CHECK(warnings_of(robot, "rotors.max_thrust_n").empty());
+    robot.rotors.max_thrust_n = 250;
+    CHECK(warnings_of(robot, "rotors.max_thrust_n").size() == 1);
+}
+
+TEST_CASE("a robot that problems with uncertainty will not take is warned of without one") {
+    Robot robot = shipped();
+    robot.uncertainty.reset();
+    robot.controller.rate_hz = 250;
+    robot.controller.delay_s = 0.01;
+    CHECK(warnings_of(robot, "controller.delay_s") ==
+          std::vector<std::string>{
+              "is too uncertain by default for problems with an `uncertainty:`: delay_s reaches from 0.005 to 0.015 s: "
+              "expected 0 to 3 control ticks, 0.012 s; a controller.rate_hz of 200 or less would do, or a narrower "
+              "{range: "
+              "[low, high]} of delays"});
+    robot.controller.rate_hz = 200;
+    CHECK(warnings_of(robot, "controller.delay_s").empty());
+}
