@@ -55,8 +55,11 @@ void add_shape(Description& description, const Sphere& sphere) {
 }
 
 void add_shape(Description& description, const Mesh& mesh) {
-    const auto& [file, scale, surface] = mesh;
+    const auto& [file, scale, surface, offset_m] = mesh;
     description.add("mesh").add(scale).add(surface ? digest_of(*surface) : "none");
+    if (offset_m != Vector3{}) {
+        description.add("offset").add_all(offset_m);
+    }
 }
 
 void add_shape(Description& description, const Octomap& octomap) {

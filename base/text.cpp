@@ -139,20 +139,28 @@ bool is_same_word(std::string_view a, std::string_view b) {
 
 std::string excerpt(std::string_view text) {
     constexpr std::size_t longest = 48;
+    constexpr std::string_view digits = "0123456789abcdef";
     std::string shown;
-    for (const char c : text.substr(0, longest)) {
-        shown += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    std::size_t at = 0;
+    while (at < text.size()) {
+        const std::size_t length = utf8_length(text.substr(at));
+        if (at + std::max<std::size_t>(length, 1) > longest) {
+            break;
+        }
+        const auto byte = static_cast<unsigned char>(text[at]);
+        // C2 80 to C2 9F are control characters like those below 20, and as such speak to terminals.
+        const bool is_control = byte < 0x20 || byte == 0x7F ||
+                                (byte == 0xC2 && length == 2 && static_cast<unsigned char>(text[at + 1]) < 0xA0);
+        if (length == 0) {
+            shown.append("\\x").append({digits[byte >> 4U], digits[byte & 15U]});
+        } else if (is_control) {
+            shown += ' ';
+        } else {
+            shown += text.substr(at, length);
+        }
+        at += std::max<std::size_t>(length, 1);
     }
-    if (text.size() <= longest) {
-        return shown;
-    }
-    while (!shown.empty() && (static_cast<unsigned char>(shown.back()) & 0xC0U) == 0x80U) {
-        shown.pop_back();  // the rest of a character that was cut
-    }
-    if (!shown.empty() && static_cast<unsigned char>(shown.back()) >= 0xC0U) {
-        shown.pop_back();
-    }
-    return shown + "...";
+    return at < text.size() ? shown + "..." : shown;
 }
 
 std::string joined_names(std::span<const std::string_view> names) {

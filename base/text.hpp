@@ -66,7 +66,8 @@ template <class Number>
 /// Whether two words are equal but for the case of their ASCII letters.
 [[nodiscard]] DOWNWASH_EXPORT bool is_same_word(std::string_view a, std::string_view b);
 
-/// A user's text for a message: on one line, cut after about fifty bytes but never within a character.
+/// A user's text for a message: on one line, cut after about fifty bytes but never within a character. Control
+/// characters become blanks, and bytes that are no UTF-8 hexadecimal numbers ("\xff"), so that terminals get text only.
 [[nodiscard]] DOWNWASH_EXPORT std::string excerpt(std::string_view text);
 
 /// The texts of some values with a separator between them.

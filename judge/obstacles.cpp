@@ -68,7 +68,7 @@ struct ShapeReader {
         model->beginModel(static_cast<int>(mesh.surface->triangles.size()));
         for (const auto& triangle : mesh.surface->triangles) {
             const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
-                return mesh.scale * vector_of(mesh.surface->vertices_m[triangle[i]]);
+                return vector_of(local_m(mesh, mesh.surface->vertices_m[triangle[i]]));
             };
             const Eigen::Vector3d a = corner(0);
             const Eigen::Vector3d b = corner(1);

@@ -148,7 +148,7 @@ struct PartsOf {
         for (const auto& triangle : mesh.surface->triangles) {
             Triangle placed;
             for (std::size_t i = 0; i < 3; ++i) {
-                placed.corners_m[i] = pose * (mesh.scale * vector_of(mesh.surface->vertices_m[triangle[i]]));
+                placed.corners_m[i] = pose * vector_of(local_m(mesh, mesh.surface->vertices_m[triangle[i]]));
             }
             const auto& [a, b, c] = placed.corners_m;
             rays.add(placed, a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c));

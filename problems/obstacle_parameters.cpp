@@ -94,6 +94,12 @@ void add_mesh(Rows& rows, const std::string& path) {
                        path + ".scale", "metres in one unit of the file: 0.001 for millimetres",
                        [](auto& p, std::size_t i) -> auto& { return std::get<Mesh>(p.obstacles[i].shape).scale; })
                        .between(1e-6, 1e6));
+    rows.push_back(parameters::vector<Problem>(
+                       path + ".offset_m",
+                       "subtracted from the file's coordinates, once scaled: the place in it that center_m places",
+                       {"x", "y", "z"},
+                       [](auto& p, std::size_t i) -> auto& { return std::get<Mesh>(p.obstacles[i].shape).offset_m; })
+                       .between(-1e9, 1e9));
     rows.push_back(center(path, "where the origin of the file stands"));
     rows.push_back(orientation(path));
 }
@@ -118,8 +124,8 @@ void add_obstacle_rows(Rows& rows) {
         to.push_back(orientation(at));
     });
     rows.push_back(parameters::alternative<Mesh, Problem>(
-        path + ".mesh", "a surface of triangles: solid when no edge of it is open, else a sheet with no inside",
-        shape));
+        path + ".mesh",
+        "a surface of triangles: each piece is solid when no edge of it is open, else a sheet with no inside", shape));
     add_mesh(rows, path + ".mesh");
     rows.push_back(parameters::alternative<Octomap, Problem>(path + ".octomap",
                                                              "the occupied cubes of an octree, each solid", shape));

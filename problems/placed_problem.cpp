@@ -31,7 +31,7 @@ PlacedProblem placed_problem(const std::shared_ptr<ProblemTreeReader>& reader) {
     }
     PlacedProblem problem{{reader->model(), model_of(check)}, reader->outdated_keys(), {}, {}};
     problem.placed = [reader](const std::vector<KeyError>& remarks) { return reader->placed(remarks); };
-    problem.warnings = problem.placed(problem_warnings(reader->model()));
+    problem.warnings = problem.placed(warnings_of(check));
     return problem;
 }
 
@@ -179,7 +179,7 @@ PlacedProblem changed_problem(const PlacedProblem& before, std::span<const KeyCh
     if (const auto found = further_errors(check, {}); !found.empty()) {
         throw ProblemFileError(before.placed(found));
     }
-    return {{problem, model_of(check)}, {}, before.placed(problem_warnings(problem)), before.placed};
+    return {{problem, model_of(check)}, {}, before.placed(warnings_of(check)), before.placed};
 }
 
 std::string effective_json(const Problem& problem, const std::filesystem::path& folder) {

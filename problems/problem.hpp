@@ -148,7 +148,8 @@ inline constexpr std::size_t max_targets = 20;
 
 /// What can be planned but is likely not meant: a controller that does not hold a hover in free air, overlapping rotor
 /// discs, rotors that roll the vehicle, gains of zero, a power far from usual, no safety margin, a goal that is met at
-/// the start, an uncertainty of nothing. Keys are key paths of a problem file. @pre problem_errors(problem) is empty
+/// the start, an uncertainty of nothing, a mesh that is not closed or far from all flights. Keys are key paths of a
+/// problem file. @pre problem_errors(problem) is empty
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> problem_warnings(const Problem& problem);
 
 /// Those of a robot alone; keys are relative to the robot. Empty when it has errors.

@@ -44,6 +44,9 @@ class ProblemCheck {
 /// See further_problem_errors().
 [[nodiscard]] std::vector<KeyError> further_errors(const ProblemCheck& check, WrongKeys wrong);
 
+/// problem_warnings() of a problem that was checked and found sound.
+[[nodiscard]] std::vector<KeyError> warnings_of(const ProblemCheck& check);
+
 /// The flight model of a problem that was checked and found sound, in the scene of that check.
 [[nodiscard]] std::shared_ptr<const FlightModel> model_of(const ProblemCheck& check);
 

@@ -37,7 +37,8 @@ ProblemCheck read_checked(ProblemTreeReader& reader, const std::filesystem::path
 }
 
 /// Tells of outdated keys and warnings. @param on_outdated,on_warning may be empty
-void tell(ProblemTreeReader& reader, const std::function<void(const LocatedError&)>& on_outdated,
+void tell(ProblemTreeReader& reader, const ProblemCheck& check,
+          const std::function<void(const LocatedError&)>& on_outdated,
           const std::function<void(const LocatedError&)>& on_warning) {
     for (const LocatedError& key : reader.outdated_keys()) {
         if (on_outdated) {
@@ -45,7 +46,7 @@ void tell(ProblemTreeReader& reader, const std::function<void(const LocatedError
         }
     }
     if (on_warning) {
-        for (const LocatedError& warning : reader.placed(problem_warnings(reader.model()))) {
+        for (const LocatedError& warning : reader.placed(warnings_of(check))) {
             on_warning(warning);
         }
     }
@@ -57,8 +58,8 @@ Problem read_problem(const std::filesystem::path& file, const std::function<void
                      const std::function<void(const LocatedError&)>& on_outdated,
                      const std::function<void(const LocatedError&)>& on_warning) {
     ProblemTreeReader reader(problem_parameters());
-    read_checked(reader, file, adjust);
-    tell(reader, on_outdated, on_warning);
+    const ProblemCheck check = read_checked(reader, file, adjust);
+    tell(reader, check, on_outdated, on_warning);
     return reader.model();
 }
 
@@ -67,7 +68,7 @@ PlannableProblem read_plannable_problem(const std::filesystem::path& file, const
                                         const std::function<void(const LocatedError&)>& on_warning) {
     ProblemTreeReader reader(problem_parameters());
     const ProblemCheck check = read_checked(reader, file, adjust);
-    tell(reader, on_outdated, on_warning);
+    tell(reader, check, on_outdated, on_warning);
     return {reader.model(), model_of(check)};
 }
 

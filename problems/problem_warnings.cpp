@@ -7,7 +7,9 @@
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/problems/geometry_warnings.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/problem_check.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/loop_margins.hpp"
 #include "downwash/simulation/world_parameters.hpp"
@@ -294,7 +296,8 @@ std::vector<KeyError> robot_warnings(const Robot& robot) {
     return robot_errors(robot).empty() ? robot_remarks(robot) : std::vector<KeyError>{};
 }
 
-std::vector<KeyError> problem_warnings(const Problem& problem) {
+std::vector<KeyError> warnings_of(const ProblemCheck& check) {
+    const Problem& problem = check.problem();
     std::vector<KeyError> all = robot_warnings(problem.robot);
     for (KeyError& warning : all) {
         warning.key.insert(0, "robot.");
@@ -303,7 +306,12 @@ std::vector<KeyError> problem_warnings(const Problem& problem) {
         const std::vector<KeyError> found = find(problem);
         all.insert(all.end(), found.begin(), found.end());
     }
+    append(all, geometry_warnings(check));
     return all;
+}
+
+std::vector<KeyError> problem_warnings(const Problem& problem) {
+    return warnings_of(ProblemCheck(problem));
 }
 
 }  // namespace downwash

@@ -193,6 +193,10 @@ double CollisionChecker::body_reach_m() const noexcept {
     return impl_->body_reach_m;
 }
 
+double CollisionChecker::robot_reach_m() const noexcept {
+    return impl_->reach_m;
+}
+
 double CollisionChecker::clearance_m(const PlanarPose& pose) const {
     if (!is_finite(pose)) {
         return -infinity;

@@ -34,6 +34,9 @@ class DOWNWASH_EXPORT CollisionChecker {
     /// No point of the multirotor's bodies is farther from its centre of mass [m].
     [[nodiscard]] double body_reach_m() const noexcept;
 
+    /// No point of the robot is farther from the multirotor's centre of mass at any arm angle [m].
+    [[nodiscard]] double robot_reach_m() const noexcept;
+
     /// Smallest distance from the robot to any obstacle [m]; <= 0 on contact, infinity without obstacles.
     [[nodiscard]] double clearance_m(const PlanarPose& pose) const;
 

@@ -1,7 +1,10 @@
 #include "downwash/scene/mesh_file.hpp"
 
+#include <utility>
+
 #include "downwash/base/text.hpp"
 #include "downwash/scene/foreign_file.hpp"
+#include "downwash/scene/mesh_welding.hpp"
 
 namespace downwash {
 
@@ -19,7 +22,7 @@ TriangleMesh parse_mesh(std::string_view bytes, const std::string& name) {
     if (mesh.triangles.empty()) {
         foreign::fail(name, "has no triangles: expected at least one");
     }
-    return mesh;
+    return with_joined_corners(std::move(mesh));
 }
 
 }  // namespace downwash

@@ -5,11 +5,15 @@
 
 #include "downwash/base/text.hpp"
 #include "downwash/scene/foreign_file.hpp"
+#include "downwash/scene/polygon_triangles.hpp"
 
 namespace downwash::foreign {
 namespace {
 
 constexpr std::size_t max_vertices = 3 * max_pieces;
+
+/// Faces that are bent by more, in their sizes, are worth a remark.
+constexpr double noted_bend = 0.01;
 
 // Statements of the Wavefront specification (Appendix B1 of the Advanced Visualizer manual) that do not add a surface.
 constexpr std::array<std::string_view, 19> passed_over{
@@ -31,16 +35,32 @@ std::optional<std::int64_t> parse_index(std::string_view text) {
     return index == std::int64_t{0} ? std::nullopt : index;
 }
 
-/// What follows an index and its slash: t, /n or t/n.
+/// What follows an index and its slash: t, /n, t/n, each of which may be missing or 0. Nobody uses them.
 bool is_texture_or_normal(std::string_view text) {
+    const auto is_whole = [](std::string_view part) { return part.empty() || parse_number<std::int64_t>(part); };
     const std::size_t slash = text.find('/');
-    return (slash == 0 || parse_index(text.substr(0, slash))) &&
-           (slash == std::string_view::npos || parse_index(text.substr(slash + 1)));
+    return is_whole(text.substr(0, slash)) && (slash == std::string_view::npos || is_whole(text.substr(slash + 1)));
+}
+
+/// What is wrong with a face.
+std::string text_of(FaceFault fault) {
+    switch (fault) {
+        case FaceFault::bent:
+            return "that is not plane: expected corners within 0.05 of its size from a plane; cut it into triangles";
+        case FaceFault::crossing:
+            return "whose outline crosses itself: expected one that goes once around; cut it into triangles";
+        case FaceFault::too_large:
+            return "that is neither convex nor small: expected at most " + std::to_string(max_concave_corners) +
+                   " corners; cut it into triangles";
+        case FaceFault::none:
+            break;
+    }
+    return "";
 }
 
 class Obj {
  public:
-    Obj(std::string_view text, const std::string& name) : lines_(text, name) {}
+    Obj(std::string_view text, const std::string& name) : lines_(text, name, Lines::Continuation::backslash) {}
 
     TriangleMesh read() {
         while (lines_.next()) {
@@ -53,25 +73,32 @@ class Obj {
                 lines_.fail("'" + std::string(statement) +
                             "' is not read, and a surface may depend on it: expected polygons, 'f', only");
             } else if (!statement.starts_with('#') && !contains(passed_over, statement)) {
+                if (is_padding(lines_.rest_with_line())) {
+                    mesh_.remarks.push_back("line " + std::to_string(lines_.number()) +
+                                            ": the file ends with bytes that are no text, which are ignored");
+                    break;
+                }
                 lines_.fail("found '" + excerpt(statement) + "', expected a statement like 'v' or 'f'");
             }
+        }
+        if (bent_faces_ > 0) {
+            mesh_.remarks.push_back(std::to_string(bent_faces_) + (bent_faces_ == 1 ? " face is" : " faces are") +
+                                    " not plane, the first in line " + std::to_string(first_bent_line_) +
+                                    ": where such faces are cut into triangles is a choice");
         }
         return std::move(mesh_);
     }
 
  private:
-    /// v x y z, and perhaps a weight, a colour or both.
+    /// v x y z, and perhaps a weight, a colour of three or four numbers, or both, which nobody uses.
     void read_vertex() {
         const auto& words = lines_.words();
         const std::size_t numbers = words.size() - 1;
-        if (numbers != 3 && numbers != 4 && numbers != 6 && numbers != 7) {
+        if (numbers < 3 || numbers == 5 || numbers > 8) {
             lines_.fail("a vertex of " + std::to_string(numbers) + " numbers: expected 3");
         }
         if (mesh_.vertices_m.size() >= max_vertices) {
             lines_.fail("too many vertices: expected at most 6000000");
-        }
-        for (std::size_t i = 4; i < words.size(); ++i) {
-            static_cast<void>(lines_.coordinate(words[i]));
         }
         mesh_.vertices_m.push_back(
             {lines_.coordinate(words[1]), lines_.coordinate(words[2]), lines_.coordinate(words[3])});
@@ -85,21 +112,32 @@ class Obj {
         if (mesh_.triangles.size() + words.size() - 3 > max_pieces) {
             lines_.fail("more triangles than expected, which is at most " + std::to_string(max_pieces));
         }
-        const std::uint32_t first = vertex_of(words[1]);
-        std::uint32_t before = vertex_of(words[2]);
-        for (std::size_t i = 3; i < words.size(); ++i) {
-            const std::uint32_t next = vertex_of(words[i]);
-            mesh_.triangles.push_back({first, before, next});
-            before = next;
+        face_.clear();
+        corners_.clear();
+        for (std::size_t i = 1; i < words.size(); ++i) {
+            face_.push_back(vertex_of(words[i]));
+            corners_.push_back(mesh_.vertices_m[face_.back()]);
+        }
+        const FaceCut cut = cut_face(corners_);
+        if (cut.fault != FaceFault::none) {
+            lines_.fail("a face of " + std::to_string(face_.size()) + " corners " + text_of(cut.fault));
+        }
+        if (cut.bend > noted_bend) {
+            first_bent_line_ = bent_faces_++ == 0 ? lines_.number() : first_bent_line_;
+        }
+        for (const auto& [a, b, c] : cut.triangles) {
+            mesh_.triangles.push_back({face_[a], face_[b], face_[c]});
         }
     }
 
-    /// The vertex of a corner i, i/t, i//n or i/t/n. Indices count from 1, negative ones back from the latest.
+    /// The vertex of a corner i, i/t, i//n or i/t/n, the numbers behind a slash optional. Indices count from 1,
+    /// negative ones back from the latest.
     [[nodiscard]] std::uint32_t vertex_of(std::string_view corner) const {
         const std::size_t slash = corner.find('/');
         const auto index = parse_index(corner.substr(0, slash));
         if (!index || (slash != std::string_view::npos && !is_texture_or_normal(corner.substr(slash + 1)))) {
-            lines_.fail("found '" + excerpt(corner) + "', expected a corner as i, i/t, i//n or i/t/n, none of them 0");
+            lines_.fail("found '" + excerpt(corner) +
+                        "', expected a corner as i, i/t, i//n or i/t/n, with i other than 0");
         }
         const auto known = static_cast<std::int64_t>(mesh_.vertices_m.size());
         if (*index > known || *index < -known) {
@@ -111,12 +149,16 @@ class Obj {
 
     Lines lines_;
     TriangleMesh mesh_;
+    std::vector<std::uint32_t> face_;  ///< the vertices of the current face
+    std::vector<Vector3> corners_;     ///< and where they are
+    std::size_t bent_faces_ = 0;
+    std::size_t first_bent_line_ = 0;
 };
 
 }  // namespace
 
 TriangleMesh parse_obj(std::string_view text, const std::string& name) {
-    return Obj(text, name).read();
+    return Obj(text_of(text, name), name).read();
 }
 
 }  // namespace downwash::foreign

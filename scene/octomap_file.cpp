@@ -22,6 +22,7 @@ constexpr double max_resolution_m = 30;
 
 struct Header {
     bool is_binary = false;
+    bool has_colors = false;  ///< of a ColorOcTree, of which only the probabilities count
     double resolution_m = 0;
     std::uint64_t nodes = 0;
     std::size_t data_at = 0;  ///< first byte of the nodes
@@ -48,9 +49,10 @@ Header read_header(std::string_view bytes, const std::string& name) {
             lines.fail("found " + std::to_string(words.size()) + " words, expected a key and its value, or 'data'");
         }
         if (words[0] == "id" && !has_id) {
-            has_id = words[1] == "OcTree";
+            header.has_colors = words[1] == "ColorOcTree";
+            has_id = header.has_colors || words[1] == "OcTree";
             if (!has_id) {
-                lines.fail("a tree of kind '" + excerpt(words[1]) + "': expected OcTree");
+                lines.fail("a tree of kind '" + excerpt(words[1]) + "': expected OcTree or ColorOcTree");
             }
         } else if (words[0] == "size" && !nodes) {
             nodes = parse_number<std::uint64_t>(words[1]);
@@ -152,7 +154,8 @@ class NodeReader {
         }
     }
 
-    /// Full: the logarithm of the odds that the node is occupied, and a bit for each child that follows.
+    /// Full: the logarithm of the odds that the node is occupied, red, green and blue if it has a colour, and a bit for
+    /// each child that follows.
     void read_node(const Place& place) {
         const std::size_t begin = at_;
         std::array<char, 4> word{};
@@ -166,6 +169,9 @@ class NodeReader {
             at_ = begin;
             fail("found log odds of " + to_text(static_cast<double>(log_odds), 6) +
                  ", expected a finite number of at most 1000 in size, little-endian");
+        }
+        for (int color = 0; header_.has_colors && color < 3; ++color) {
+            next_byte();
         }
         const unsigned children = next_byte();
         if (children == 0) {

@@ -5,9 +5,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <tuple>
 
+#include "downwash/scene/bounds_tree.hpp"
+#include "downwash/scene/convex.hpp"
 #include "downwash/scene/scene_solids.hpp"
+#include "downwash/scene/surface_facts.hpp"
 
 namespace downwash {
 namespace {
@@ -84,6 +88,36 @@ std::vector<LocalBox> merged_boxes(const OccupancyTree& tree) {
         boxes.push_back(box_of(block));
     }
     return boxes;
+}
+
+std::size_t piece_count(const OccupancyTree& tree) {
+    std::vector<BoundingBox> boxes;
+    for (const LocalBox& box : merged_boxes(tree)) {
+        boxes.push_back({box.center_m - 0.5 * box.size_m, box.center_m + 0.5 * box.size_m});
+    }
+    std::vector<std::size_t> piece(boxes.size());
+    std::iota(piece.begin(), piece.end(), std::size_t{0});
+    const auto root = [&piece](std::size_t i) {
+        while (piece[i] != i) {
+            piece[i] = piece[piece[i]];
+            i = piece[i];
+        }
+        return i;
+    };
+    const BoundsTree index(boxes);
+    const double touching_m = place_tolerance * tree.resolution_m;
+    std::size_t pieces = boxes.size();
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+        const auto gap = [&](const BoundingBox& other) { return gap_m(boxes[i], other); };
+        index.any(gap, touching_m, [&](std::size_t other) {
+            if (gap(boxes[other]) <= touching_m && root(i) != root(other)) {
+                piece[root(other)] = root(i);
+                --pieces;
+            }
+            return false;
+        });
+    }
+    return pieces;
 }
 
 }  // namespace downwash

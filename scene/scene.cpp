@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/scene/mesh_sides.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
 #include "downwash/scene/octree_boxes.hpp"
@@ -25,12 +26,34 @@ bool is_length(double x) {
 constexpr double farthest_m = 1e6;
 
 Triangle corners_of(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
-    const auto corner = [&](std::size_t i) { return mesh.scale * mesh.surface->vertices_m[triangle[i]]; };
+    const auto corner = [&](std::size_t i) { return local_m(mesh, mesh.surface->vertices_m[triangle[i]]); };
     return {corner(0), corner(1), corner(2)};
 }
 
 bool is_near(const Vector3& p_m) {
     return std::all_of(p_m.begin(), p_m.end(), [](double x) { return std::abs(x) <= farthest_m; });
+}
+
+/// What to do about a mesh that lies too far from its origin; nothing if it is too large besides.
+std::string remedy_for_far(const Mesh& mesh) {
+    BoundingBox bounds{{1, 1, 1}, {-1, -1, -1}};
+    for (const Vector3& vertex : mesh.surface->vertices_m) {
+        const Vector3 p_m = local_m(mesh, vertex);
+        if (!is_finite(p_m)) {
+            return "";
+        }
+        bounds = bounds.low_m[0] > bounds.high_m[0] ? BoundingBox{p_m, p_m} : bounds;
+        bounds.include({p_m, p_m});
+    }
+    const Vector3 middle_m = bounds.low_m + 0.5 * (bounds.high_m - bounds.low_m);
+    if (!is_near(bounds.low_m - middle_m) || !is_near(bounds.high_m - middle_m)) {
+        return "";
+    }
+    std::string offset;
+    for (std::size_t k = 0; k < 3; ++k) {
+        offset += (k > 0 ? ", " : "") + to_text(std::round(mesh.offset_m[k] + middle_m[k]));
+    }
+    return "; an offset brings map coordinates there: expected for example offset_m: [" + offset + "]";
 }
 
 bool has_area(const Triangle& triangle) {
@@ -57,11 +80,13 @@ struct ShapeInspector {
     void operator()(const Mesh& mesh) const {
         const bool has_scale =
             require(std::isfinite(mesh.scale) && mesh.scale > 0, ".mesh.scale", "must be a finite number above 0");
-        if (!has_scale || !require(mesh.surface != nullptr, ".mesh.file", "must have been read: there is no surface")) {
+        const bool has_offset = require(is_finite(mesh.offset_m), ".mesh.offset_m", "must be three finite numbers");
+        if (!has_scale || !has_offset ||
+            !require(mesh.surface != nullptr, ".mesh.file", "must have been read: there is no surface")) {
             return;
         }
         const TriangleMesh& surface = *mesh.surface;
-        const auto is_vertex = [&](const Vector3& v) { return is_near(mesh.scale * v); };
+        const auto is_vertex = [&](const Vector3& v) { return is_near(local_m(mesh, v)); };
         const auto is_known = [&](const std::array<std::uint32_t, 3>& triangle) {
             return std::all_of(triangle.begin(), triangle.end(),
                                [&](std::uint32_t corner) { return corner < surface.vertices_m.size(); });
@@ -70,9 +95,11 @@ struct ShapeInspector {
             return has_area(corners_of(mesh, triangle));
         };
         const auto& triangles = surface.triangles;
+        const bool are_near = std::all_of(surface.vertices_m.begin(), surface.vertices_m.end(), is_vertex);
         if (require_pieces(triangles.size(), "triangles", ".mesh.file") &&
-            require(std::all_of(surface.vertices_m.begin(), surface.vertices_m.end(), is_vertex), ".mesh.file",
-                    "has a vertex that is not finite or, once scaled, farther than 1e6 m from its origin") &&
+            require(are_near, ".mesh.file",
+                    "has a vertex that is not finite or, once scaled, farther than 1e6 m from its origin" +
+                        (are_near ? "" : remedy_for_far(mesh))) &&
             require(std::all_of(triangles.begin(), triangles.end(), is_known), ".mesh.file",
                     "has a triangle with a corner that is not among its vertices")) {
             require(std::any_of(triangles.begin(), triangles.end(), has_extent), ".mesh.file",
@@ -109,20 +136,21 @@ struct ShapeInspector {
     }
 };
 
-std::vector<Triangle> scaled_triangles(const Mesh& mesh, const std::vector<bool>& is_turned) {
+/// Adds the triangles of the sheets of a mesh, or those of its solids, that have an area.
+void add_triangles(const Mesh& mesh, const MeshSides& sides, bool are_sheets, std::vector<Triangle>& all) {
     const auto& triangles = mesh.surface->triangles;
-    std::vector<Triangle> all;
-    all.reserve(triangles.size());
     for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (sides.is_repeated[i] || sides.is_sheet[i] != are_sheets) {
+            continue;
+        }
         Triangle corners = corners_of(mesh, triangles[i]);
         if (has_area(corners)) {
-            if (!is_turned.empty() && is_turned[i]) {
+            if (sides.is_turned[i]) {
                 std::swap(corners[1], corners[2]);
             }
             all.push_back(corners);
         }
     }
-    return all;
 }
 
 void inspect_pose(const Obstacle& obstacle, const std::string& key, std::vector<KeyError>& errors) {
@@ -193,16 +221,24 @@ struct PartsMaker {
         const Matrix3 rotation = rotation_of(obstacle.rpy_rad);
         const std::size_t first = triangles.size();
         BoundingBox bounds = nothing;
-        for (Triangle triangle : scaled_triangles(mesh, sides.is_turned)) {
-            for (Vector3& corner : triangle) {
-                corner = to_world(rotation, corner);
+        const auto place_from = [&](std::size_t at) {
+            for (; at < triangles.size(); ++at) {
+                for (Vector3& corner : triangles[at]) {
+                    corner = to_world(rotation, corner);
+                }
+                bounds.include(bounds_of(triangles[at]));
             }
-            triangles.push_back(triangle);
-            bounds.include(bounds_of(triangle));
+        };
+        triangles.reserve(first + mesh.surface->triangles.size());
+        add_triangles(mesh, sides, false, triangles);
+        place_from(first);
+        const std::size_t first_of_sheets = triangles.size();
+        if (first_of_sheets > first) {
+            solids.closed_surfaces.push_back({first, first_of_sheets, bounds});
         }
-        if (sides.kind == SurfaceKind::solid) {
-            solids.closed_surfaces.push_back({first, triangles.size(), bounds});
-        }
+        add_triangles(mesh, sides, true, triangles);
+        place_from(first_of_sheets);
+        solids.facts.back() = sides.facts;
         return bounds;
     }
 
@@ -215,6 +251,7 @@ std::shared_ptr<const SceneSolids> placed(std::vector<Obstacle> obstacles) {
     auto solids = std::make_shared<SceneSolids>();
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string key = "obstacles[" + std::to_string(i) + "]";
+        solids->facts.push_back({1, 1, 0, {}});
         solids->bounds.push_back(std::visit(PartsMaker{obstacles[i], key, *solids}, obstacles[i].shape));
     }
     solids->parts.index();
@@ -236,6 +273,10 @@ const std::vector<Obstacle>& Scene::obstacles() const noexcept {
 
 const BoundingBox& Scene::bounds(std::size_t obstacle) const noexcept {
     return solids_->bounds[obstacle];
+}
+
+const SurfaceFacts& Scene::facts(std::size_t obstacle) const noexcept {
+    return solids_->facts[obstacle];
 }
 
 std::size_t Scene::part_count() const noexcept {

@@ -9,6 +9,7 @@
 #include "downwash/base/export.hpp"
 #include "downwash/scene/bounding_box.hpp"
 #include "downwash/scene/shapes.hpp"
+#include "downwash/scene/surface_facts.hpp"
 
 namespace downwash {
 
@@ -26,6 +27,9 @@ class DOWNWASH_EXPORT Scene {
 
     /// The bounding box of the obstacle of that number in obstacles().
     [[nodiscard]] const BoundingBox& bounds(std::size_t obstacle) const noexcept;
+
+    /// What the scene made of that obstacle if it is a mesh; any other one counts as one solid piece.
+    [[nodiscard]] const SurfaceFacts& facts(std::size_t obstacle) const noexcept;
 
     /// Obstacles consist of convex parts: a mesh of its triangles, an octree of boxes that fill what its cubes fill,
     /// any other is its own only part. Parts are numbered through; those of primitives come first, in the obstacles'

@@ -7,12 +7,13 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/scene/parts.hpp"
+#include "downwash/scene/surface_facts.hpp"
 
 namespace downwash {
 
 /// Everything in the world frame N.
 struct SceneSolids {
-    /// A mesh without a rim, which is solid: `first` to `last` - 1 of Parts::triangles.
+    /// The pieces of a mesh without a rim, which are solid: `first` to `last` - 1 of Parts::triangles.
     struct ClosedSurface {
         std::size_t first, last;
         BoundingBox bounds;
@@ -20,6 +21,7 @@ struct SceneSolids {
 
     std::vector<Obstacle> obstacles;
     std::vector<BoundingBox> bounds;  ///< tight boxes of the obstacles
+    std::vector<SurfaceFacts> facts;  ///< of the obstacles
     Parts parts;
     std::vector<ClosedSurface> closed_surfaces;
 

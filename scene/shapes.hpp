@@ -33,19 +33,27 @@ struct Sphere {
 /// bounds the memory that a file can ask for (some 150 bytes a piece).
 inline constexpr std::size_t max_pieces = 2'000'000;
 
-/// Triangles of a surface, in the local frame: corners are indices of vertices, counter-clockwise seen from outside.
+/// Triangles of a surface: corners are indices of vertices, counter-clockwise seen from outside.
 struct TriangleMesh {
     std::vector<Vector3> vertices_m;
     std::vector<std::array<std::uint32_t, 3>> triangles;
+    /// What the reader of its file passed over or had to choose, with its place in the file; says nothing to the scene.
+    std::vector<std::string> remarks = {};
 };
 
-/// A surface from a file. Closed surfaces are solid, even with triangles wound the wrong way around; one open edge,
-/// with an odd number of triangles, makes a sheet of no thickness of the whole.
+/// A surface from a file. Each closed piece of it is solid, even with triangles wound the wrong way around; one open
+/// edge, with an odd number of triangles, makes a sheet of no thickness of its piece.
 struct Mesh {
     std::string file;  ///< where it was read; says nothing to the scene
     double scale = 1;  ///< > 0; multiplies the vertices, which are as in the file
     std::shared_ptr<const TriangleMesh> surface;
+    Vector3 offset_m{};  ///< subtracted from the vertices, once scaled: the place in the file that is its origin here
 };
+
+/// A vertex of a mesh's surface in the local frame [m].
+[[nodiscard]] inline Vector3 local_m(const Mesh& mesh, const Vector3& vertex) noexcept {
+    return mesh.scale * vertex - mesh.offset_m;
+}
 
 /// A cube of space that is occupied, its edges along the local axes.
 struct OccupiedCube {

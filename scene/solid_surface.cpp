@@ -84,7 +84,7 @@ class SurfaceBuilder {
     }
     void operator()(const Mesh& mesh) {
         for (const Vector3& vertex : mesh.surface->vertices_m) {
-            surface.vertices_m.push_back(mesh.scale * vertex);
+            surface.vertices_m.push_back(local_m(mesh, vertex));
         }
         surface.triangles = mesh.surface->triangles;
     }

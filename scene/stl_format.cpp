@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "downwash/base/byte_order.hpp"
 #include "downwash/base/text.hpp"
@@ -33,10 +34,29 @@ bool is_binary(std::string_view bytes) {
     return bytes.size() >= triangles_at && bytes.size() == size_of(count_in(bytes));
 }
 
+/// The beginning of a file without byte order mark and blanks, as far as the name of a binary one would reach.
+std::string_view beginning_of(std::string_view bytes) {
+    constexpr std::string_view mark = "\xef\xbb\xbf";
+    const std::string_view content = trimmed(bytes.substr(bytes.starts_with(mark) ? mark.size() : 0));
+    return content.substr(0, triangles_at + triangle_bytes);
+}
+
+bool begins_with_solid(std::string_view text) {
+    return is_same_word(text.substr(0, 5), "solid");
+}
+
 /// Whether a file that is not binary by its size is meant as text.
 bool is_text(std::string_view bytes) {
-    const std::string_view begin = bytes.substr(0, triangles_at + triangle_bytes);
-    return is_same_word(begin.substr(0, 5), "solid") && begin.find('\0') == std::string_view::npos;
+    const std::string_view begin = beginning_of(bytes);
+    return begins_with_solid(begin) && begin.find('\0') == std::string_view::npos;
+}
+
+/// Whether a file is UTF-16 text.
+bool is_utf16(std::string_view bytes) {
+    std::string without_zeros(bytes.substr(0, triangles_at));
+    std::erase(without_zeros, '\0');
+    return has_utf16_mark(bytes) ||
+           (bytes.substr(0, 2).find('\0') != std::string_view::npos && begins_with_solid(trimmed(without_zeros)));
 }
 
 [[noreturn]] void fail_for_size(std::string_view bytes, const std::string& name) {
@@ -53,12 +73,20 @@ bool is_text(std::string_view bytes) {
                 std::to_string(size_of(count)) + ", found " + std::to_string(bytes.size()));
 }
 
+bool is_coordinate(double number) {
+    return std::abs(number) <= max_coordinate;
+}
+
+double number_in(std::string_view bytes, std::size_t at) {
+    return static_cast<double>(number_at<float>(bytes.data() + at));
+}
+
 double read_coordinate(std::string_view bytes, std::size_t at, const std::string& name) {
-    const auto number = static_cast<double>(number_at<float>(bytes.data() + at));
-    if (!(std::abs(number) <= max_coordinate)) {
+    const double number = number_in(bytes, at);
+    if (!is_coordinate(number)) {
         fail_at(name, at,
                 "found " + to_text(number, 6) +
-                    ", expected a finite number of at most 1e6 in size, "
+                    ", expected a finite number of at most 1e10 in size, "
                     "little-endian");
     }
     return number;
@@ -69,8 +97,48 @@ Vector3 read_vector(std::string_view bytes, std::size_t at, const std::string& n
             read_coordinate(bytes, at + 8, name)};
 }
 
+/// Whether bytes may be triangles of their own: whole ones, with corners that are places and not all zero.
+bool may_be_triangles(std::string_view bytes) {
+    if (bytes.empty() || bytes.size() % triangle_bytes != 0 || is_padding(bytes)) {
+        return false;
+    }
+    for (std::size_t at = 0; at < bytes.size(); at += triangle_bytes) {
+        for (std::size_t i = 3; i < 12; ++i) {
+            if (!is_coordinate(number_in(bytes, at + 4 * i))) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+/// How many triangles a binary file has. A count of 0 or 4294967295 is that of a writer that could not go back to it:
+/// the size tells.
+/// @throws InputError when neither the size nor the stated count can be right
+std::size_t binary_count(std::string_view bytes, const std::string& name) {
+    if (bytes.size() < triangles_at) {
+        fail_for_size(bytes, name);
+    }
+    const std::uint32_t stated = count_in(bytes);
+    const std::string_view rest = bytes.substr(triangles_at);
+    if (stated == 0 || stated == std::numeric_limits<std::uint32_t>::max()) {
+        if (rest.size() % triangle_bytes != 0) {
+            fail_for_size(bytes, name);
+        }
+        return rest.size() / triangle_bytes;
+    }
+    if (bytes.size() < size_of(stated)) {
+        fail_for_size(bytes, name);
+    }
+    const std::string_view surplus = bytes.substr(static_cast<std::size_t>(size_of(stated)));
+    if (is_binary(surplus) || may_be_triangles(surplus)) {
+        fail_for_size(bytes, name);
+    }
+    return stated;
+}
+
 TriangleMesh parse_binary(std::string_view bytes, const std::string& name) {
-    const std::size_t count = count_in(bytes);
+    const std::size_t count = binary_count(bytes, name);
     if (count > max_pieces) {
         fail_at(name, count_at,
                 "has " + std::to_string(count) + " triangles: expected at most " + std::to_string(max_pieces));
@@ -78,10 +146,14 @@ TriangleMesh parse_binary(std::string_view bytes, const std::string& name) {
     TriangleMesh mesh;
     mesh.vertices_m.reserve(3 * count);
     mesh.triangles.reserve(count);
-    for (std::size_t at = triangles_at; at < bytes.size(); at += triangle_bytes) {
-        static_cast<void>(read_vector(bytes, at, name));  // the normal: only checked
+    const std::size_t end = triangles_at + triangle_bytes * count;
+    for (std::size_t at = triangles_at; at < end; at += triangle_bytes) {  // behind a normal that nobody uses
         add_triangle(mesh, {read_vector(bytes, at + 12, name), read_vector(bytes, at + 24, name),
                             read_vector(bytes, at + 36, name)});
+    }
+    if (end < bytes.size()) {
+        mesh.remarks.push_back("byte " + std::to_string(end) + ": the last " + std::to_string(bytes.size() - end) +
+                               " bytes are behind the last triangle and are ignored");
     }
     return mesh;
 }
@@ -92,42 +164,76 @@ class AsciiStl {
     AsciiStl(std::string_view text, const std::string& name) : lines_(text, name) {}
 
     TriangleMesh read() {
-        while (lines_.next()) {
-            expect(lines_.starts_with("solid"), "solid");
-            for (move_on("endsolid"); lines_.starts_with("facet"); move_on("endsolid")) {
-                read_facet();
+        for (bool is_first = true; lines_.next(); is_first = false) {
+            expect(!is_first || lines_.starts_with("solid"), "solid");
+            if (!lines_.starts_with("solid")) {
+                pass_over();
+                continue;
             }
-            expect(lines_.starts_with("endsolid"), "facet' or 'endsolid");
+            do {
+                if (!lines_.next()) {
+                    mesh_.remarks.push_back("line " + std::to_string(lines_.number()) +
+                                            ": the file ends without 'endsolid', and may be cut off");
+                    return std::move(mesh_);
+                }
+            } while (read_facet());
+            expect(is_end_of("solid"), "facet' or 'endsolid");
         }
         return std::move(mesh_);
     }
 
  private:
-    void read_facet() {
+    /// Passes over what stands behind a solid, unless it would belong into one.
+    void pass_over() {
+        for (const char* word : {"facet", "outer", "vertex", "endloop", "endfacet", "endsolid", "end"}) {
+            expect(!lines_.starts_with(word), "solid");
+        }
+        if (!is_told_of_rest_) {
+            mesh_.remarks.push_back("line " + std::to_string(lines_.number()) + ": found '" +
+                                    excerpt(lines_.words()[0]) + "' behind 'endsolid', which is ignored");
+            is_told_of_rest_ = true;
+        }
+    }
+
+    /// @return whether the current line begins a facet
+    bool read_facet() {
+        if (!lines_.starts_with("facet")) {
+            return false;
+        }
         if (mesh_.triangles.size() >= max_pieces) {
             lines_.fail("too many triangles: expected at most " + std::to_string(max_pieces));
         }
-        expect_words({"facet", "normal"}, 3);
-        static_cast<void>(numbers(2));  // the normal: only checked
+        // The rest of the line is a normal that nobody uses.
         move_on("outer loop");
         expect_words({"outer", "loop"}, 0);
         std::array<Vector3, 3> corners{};
         for (Vector3& corner : corners) {
             move_on("vertex");
             expect_words({"vertex"}, 3);
-            corner = numbers(1);
+            const auto& words = lines_.words();
+            corner = {lines_.coordinate(words[1]), lines_.coordinate(words[2]), lines_.coordinate(words[3])};
         }
         move_on("endloop");
-        expect_words({"endloop"}, 0);
+        expect(is_end_of("loop"), "endloop");
         move_on("endfacet");
-        expect_words({"endfacet"}, 0);
+        expect(is_end_of("facet"), "endfacet");
         add_triangle(mesh_, corners);
+        return true;
     }
 
     void move_on(const std::string& expected) {
         if (!lines_.next()) {
             lines_.fail("the file ends here: expected '" + expected + "'");
         }
+    }
+
+    /// Whether the current line ends a thing: "endloop" or "end loop". What follows "endsolid" is a name.
+    [[nodiscard]] bool is_end_of(const std::string& thing) const {
+        const auto& words = lines_.words();
+        const bool is_one_word = is_same_word(words[0], "end" + thing);
+        const std::size_t used = is_one_word ? 1 : 2;
+        return (is_one_word || (words.size() > 1 && is_same_word(words[0], "end") && is_same_word(words[1], thing))) &&
+               (thing == "solid" || words.size() == used);
     }
 
     void expect(bool holds, const std::string& expected) const {
@@ -151,14 +257,9 @@ class AsciiStl {
         }
     }
 
-    [[nodiscard]] Vector3 numbers(std::size_t first) const {
-        const auto& words = lines_.words();
-        return {lines_.coordinate(words[first]), lines_.coordinate(words[first + 1]),
-                lines_.coordinate(words[first + 2])};
-    }
-
     Lines lines_;
     TriangleMesh mesh_;
+    bool is_told_of_rest_ = false;
 };
 
 }  // namespace
@@ -167,10 +268,13 @@ TriangleMesh parse_stl(std::string_view bytes, const std::string& name) {
     if (is_binary(bytes)) {
         return parse_binary(bytes, name);
     }
-    if (is_text(bytes)) {
-        return AsciiStl(bytes, name).read();
+    if (is_utf16(bytes)) {
+        fail_for_utf16(name);
     }
-    fail_for_size(bytes, name);
+    if (is_text(bytes)) {
+        return AsciiStl(text_of(bytes, name), name).read();
+    }
+    return parse_binary(bytes, name);
 }
 
 }  // namespace downwash::foreign

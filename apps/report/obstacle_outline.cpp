@@ -125,7 +125,7 @@ class OutlineOf {
         std::vector<Vector3> vertices_m;
         vertices_m.reserve(mesh.surface->vertices_m.size());
         for (const Vector3& own : mesh.surface->vertices_m) {
-            vertices_m.push_back(frame_(mesh.scale * own));
+            vertices_m.push_back(frame_(local_m(mesh, own)));
         }
         MeshSection cut = mesh_section(vertices_m, mesh.surface->triangles);
         outline_.is_cut = !cut.rings.empty() || !cut.lines.empty();

@@ -7,6 +7,7 @@
 #include "downwash/base/byte_order.hpp"
 #include "downwash/base/version.hpp"
 #include "downwash/exports/formats.hpp"
+#include "downwash/scene/bounding_box.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
 #include "downwash/scene/solid_surface.hpp"
 
@@ -169,6 +170,43 @@ std::vector<float> floats_of(const Quaternion& q) {
     return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
 }
 
+/// A place near to another one in whole kilometres, which floats hold exactly: what is within a kilometre of it has
+/// coordinates that floats hold to 0.04 mm.
+Vector3 whole_kilometres(const Vector3& place_m) {
+    Vector3 whole_m{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        whole_m[k] = 1000 * std::round(place_m[k] / 1000) + 0.;  // no negative zero
+    }
+    return whole_m;
+}
+
+/// A node with what has an origin of its own, a translation only where that is not 0.
+Json node_at(const Vector3& origin_m, Json node) {
+    if (origin_m != Vector3{}) {
+        node["translation"] = origin_m;
+    }
+    return node;
+}
+
+/// Moves a surface. @return with its vertices less a place
+TriangleMesh seen_from(const Vector3& origin_m, TriangleMesh surface) {
+    for (Vector3& vertex_m : surface.vertices_m) {
+        vertex_m = vertex_m - origin_m;
+    }
+    return surface;
+}
+
+Vector3 middle_of(const TriangleMesh& surface) {
+    if (surface.vertices_m.empty()) {
+        return {};
+    }
+    BoundingBox bounds{surface.vertices_m[0], surface.vertices_m[0]};
+    for (const Vector3& vertex_m : surface.vertices_m) {
+        bounds.include({vertex_m, vertex_m});
+    }
+    return 0.5 * (bounds.low_m + bounds.high_m);
+}
+
 /// Where the vehicle is at the beginning, for viewers that show no animation.
 struct Pose {
     Vector3 place_m{};
@@ -226,14 +264,16 @@ void append(std::vector<float>& list, const Vector3& point_m) {
     }
 }
 
-/// @return the node that shows the way
-std::size_t add_flight(Gltf& gltf, const RunRecord& run, std::size_t vehicle, std::size_t arm) {
+/// @param origin_m world place from which coordinates count   @return the node that shows the way
+std::size_t add_flight(Gltf& gltf, const RunRecord& run, const Vector3& origin_m, std::size_t vehicle,
+                       std::size_t arm) {
     const NumberTable& flight = run.flight;
     std::vector<float> times, places, attitudes, arms;
     const Quaternion heading = Quaternion::about_z(run.problem.plane.heading_rad());
     for (std::size_t row = 0; row < flight.rows(); ++row) {
         times.push_back(static_cast<float>((*flight.find("t_s"))[row]));
-        append(places, run.problem.plane.to_world((*flight.find("x_m"))[row], 0, (*flight.find("z_m"))[row]));
+        append(places,
+               run.problem.plane.to_world((*flight.find("x_m"))[row], 0, (*flight.find("z_m"))[row]) - origin_m);
         append(attitudes, floats_of(heading * Quaternion::about_y((*flight.find("pitch_rad"))[row])));
         append(arms, floats_of(Quaternion::about_y((*flight.find("arm_rad"))[row])));
     }
@@ -248,15 +288,24 @@ std::size_t add_flight(Gltf& gltf, const RunRecord& run, std::size_t vehicle, st
 
 std::string gltf_binary(const RunRecord& run, const ExportSettings&) {
     Gltf gltf;
+    // Buffers hold floats. Everything counts from an origin near the flight, which a node above has as text, in double.
+    Pose pose = first_pose(run);
+    const Vector3 origin_m = whole_kilometres(pose.place_m);
+    pose.place_m = pose.place_m - origin_m;
     std::vector<std::size_t> children;
     for (const Obstacle& obstacle : run.problem.obstacles) {
-        children.push_back(
-            gltf.add_node({{"name", obstacle.name}, {"mesh", gltf.add_mesh(surface_of(obstacle), Gltf::obstacle)}}));
+        const TriangleMesh surface = seen_from(origin_m, surface_of(obstacle));
+        const Vector3 own_m = whole_kilometres(middle_of(surface));
+        children.push_back(gltf.add_node(node_at(
+            own_m, {{"name", obstacle.name}, {"mesh", gltf.add_mesh(seen_from(own_m, surface), Gltf::obstacle)}})));
     }
-    const auto [vehicle, arm] = add_robot(gltf, run.problem.robot, first_pose(run));
+    const auto [vehicle, arm] = add_robot(gltf, run.problem.robot, pose);
     children.push_back(vehicle);
     if (run.flight.rows() > 1) {
-        children.push_back(add_flight(gltf, run, vehicle, arm));
+        children.push_back(add_flight(gltf, run, origin_m, vehicle, arm));
+    }
+    if (origin_m != Vector3{}) {
+        children = {gltf.add_node(node_at(origin_m, {{"name", "origin"}, {"children", children}}))};
     }
     constexpr double half_root = 0.70710678118654752;
     const std::size_t root =

@@ -189,6 +189,11 @@ TEST_CASE("whatever makes a map is part of its key") {
         {"mesh", [](Making& m) { m.give_mesh(1); }},
         {"mesh scale", [](Making& m) { m.give_mesh(1, 2); }},
         {"mesh vertices", [](Making& m) { m.give_mesh(1.1); }},
+        {"mesh offset",
+         [](Making& m) {
+             m.give_mesh(1);
+             std::get<Mesh>(m.obstacles[0].shape).offset_m = {0, 0, 0.1};
+         }},
     };
     std::map<std::string, std::string> names{{Making().key(), "unchanged"}};
     for (const auto& [name, change] : changes) {

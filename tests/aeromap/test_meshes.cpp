@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "../support/hard_places.hpp"
@@ -11,6 +14,7 @@
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/scene/collision_checker.hpp"
+#include "downwash/scene/mesh_file.hpp"
 #include "scenes.hpp"
 
 using namespace downwash;
@@ -224,6 +228,47 @@ TEST_CASE("Moving or mirroring scene and rotor together changes nothing") {
 
             const DirectEffect reflection = effect_of({{"", test::stretched(mesh, {1, -1, 1}), {}, {}}});
             REQUIRE(difference(reflection.factors({hub[0], -hub[1], hub[2]}), before) < allowed);
+        }
+    }
+}
+
+TEST_CASE(
+    "A deck with a doorway as two polygons is felt as the boxes that it stands for, whichever corner comes first") {
+    const std::vector<std::pair<int, int>> outline{{-12, -4}, {12, -4}, {12, 4}, {3, 4},
+                                                   {3, -2},   {-3, -2}, {-3, 4}, {-12, 4}};
+    const DirectEffect boxes = effect_of({{"", Box{{9, 8, 0.4}}, {-7.5, 0, 5.2}, {}},
+                                          {"", Box{{9, 8, 0.4}}, {7.5, 0, 5.2}, {}},
+                                          {"", Box{{6, 2, 0.4}}, {0, -3, 5.2}, {}}});
+    const auto ceiling = [](const DirectEffect& effect, double x_m, double y_m) {
+        return effect.factors({x_m, y_m, 4.7}).ceiling;
+    };
+    REQUIRE(ceiling(boxes, 7, 0) > 1.04);
+    for (std::size_t first = 0; first < outline.size(); ++first) {
+        std::string text;
+        for (const char* height : {" 5\n", " 5.4\n"}) {
+            for (std::size_t i = 0; i < outline.size(); ++i) {
+                const auto& [x, y] = outline[(first + i) % outline.size()];
+                text += "v " + std::to_string(x) + " " + std::to_string(y) + height;
+            }
+        }
+        text += "f 8 7 6 5 4 3 2 1\nf 9 10 11 12 13 14 15 16\n";
+        for (int i = 1; i <= 8; ++i) {
+            const int next = i % 8 + 1;
+            for (const int corner : {i, next, next + 8, i + 8}) {
+                text += (corner == i ? "f " : " ") + std::to_string(corner);
+            }
+            text += "\n";
+        }
+        const auto surface = std::make_shared<const TriangleMesh>(parse_mesh(text, "deck.obj"));
+        const auto scene = scene_of({{"", Mesh{"", 1, surface}, {}, {}}});
+        CHECK(scene->facts(0).solid_pieces == 1);
+        const DirectEffect mesh = effect_of(scene->obstacles());
+        CAPTURE(first);
+        CHECK(ceiling(mesh, 0, 1) == Approx(1).margin(1e-4));
+        for (int i = 0; i <= 20; ++i) {
+            for (const double y_m : {-3., -1.9, 0., 3.9}) {
+                CHECK(ceiling(mesh, -5 + 0.5 * i, y_m) == Approx(ceiling(boxes, -5 + 0.5 * i, y_m)).margin(5e-3));
+            }
         }
     }
 }

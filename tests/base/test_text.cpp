@@ -52,6 +52,27 @@ TEST_CASE("a long text is cut between characters") {
     CHECK(excerpt(std::string(46, 'a') + "\xe2\x82\xac" + "bc") ==
           std::string(46, 'a') + "...");  // after two of three bytes
     CHECK(excerpt(std::string(48, 'a')) == std::string(48, 'a'));
+    CHECK(excerpt(std::string(48, 'a') + "b") == std::string(48, 'a') + "...");
+}
+
+TEST_CASE("an excerpt is text, whatever bytes it is of") {
+    CHECK(excerpt("\xff\xfe#") == "\\xff\\xfe#");
+    CHECK(excerpt("Br\xfc"
+                  "cke") == "Br\\xfccke");
+    CHECK(excerpt("Br\xc3\xbc"
+                  "cke") ==
+          "Br\xc3\xbc"
+          "cke");
+    // Escape, delete and the control sequence introducer of eight bits speak to terminals.
+    CHECK(excerpt("a\x1b[31mb\x7f"
+                  "c\xc2\x9b"
+                  "2Jd") == "a [31mb c 2Jd");
+    for (int first = 0; first < 256; ++first) {
+        for (int second = 0; second < 256; ++second) {
+            const std::string shown = excerpt(std::string{static_cast<char>(first), static_cast<char>(second)});
+            REQUIRE(is_utf8(shown));
+        }
+    }
 }
 
 TEST_CASE("names of keys carry their units") {

@@ -222,9 +222,54 @@ TEST_CASE("No shipped problem or robot warns and campaigns are checked too") {
         for (const auto& entry : std::filesystem::directory_iterator(folder)) {
             if (entry.path().extension() == ".yaml") {
                 CAPTURE(entry.path());
-                CHECK(work.json("check", entry.path()) ==
-                      nlohmann::json{{"faults", nlohmann::json::array()}, {"warnings", nlohmann::json::array()}});
+                const auto found = work.json("check", entry.path());
+                CHECK(found.at("faults") == nlohmann::json::array());
+                CHECK(found.at("warnings") == nlohmann::json::array());
+                for (const auto& geometry : found.at("geometry")) {
+                    CHECK(geometry.at("surface") == "solid");
+                }
             }
         }
     }
+}
+
+TEST_CASE("Check tells what became of meshes and octrees in the world, and solve warns of the same") {
+    const Workspace work;
+    const auto shipped = work.json("check", shipped_file("girder_mesh")).at("geometry");
+    REQUIRE(shipped.size() == 4);
+    CHECK(shipped[0].at("key") == "environment.obstacles[2]");
+    CHECK(shipped[0].at("obstacle") == "left_girder");
+    CHECK(shipped[0].at("kind") == "mesh");
+    CHECK(shipped[0].at("pieces") == 11);  // the girder and its stiffeners
+    CHECK(shipped[0].at("open_place").is_null());
+    CHECK(shipped[0].at("low_m").at(0).get<double>() == Approx(-8.9));
+    CHECK(shipped[0].at("high_m").at(2).get<double>() == Approx(10));
+    CHECK(shipped[3].at("kind") == "octree");
+    CHECK(shipped[3].at("cubes").get<int>() > 1000);
+    CHECK(shipped[3].at("pieces") == 1);
+    CHECK_THAT(work.succeed("check", shipped_file("girder_mesh")).out,
+               Contains(" of 164 triangles, 11 pieces, solid, x -8.9 to 3.1 m, y ") && Contains("  pier: octree of "));
+
+    // A wall of two triangles with y up, in millimetres.
+    write_file(work / "wall.obj", "v 3000 0 40000\nv 3000 0 42000\nv 3000 3000 42000\nv 3000 3000 40000\nf 1 2 3 4\n");
+    const std::string file = work / "wall.yaml";
+    write_file(file, std::regex_replace(problem_text("open_air"), std::regex("(    - \\{name: ground)"),
+                                        "    - {name: wall, mesh: {file: wall.obj, center_m: [0, 41, 0]}}\n$1"));
+    const auto found = work.json("check", file);
+    REQUIRE(found.at("geometry").size() == 1);
+    const auto& wall = found.at("geometry").at(0);
+    CHECK(wall.at("problem") == file);
+    CHECK(wall.at("surface") == "sheet");
+    CHECK(wall.at("triangles") == 2);
+    CHECK(wall.at("open_edges") == 4);
+    CHECK(wall.at("open_place").size() == 3);
+    CHECK(wall.at("high_m") == nlohmann::json{3000., 3041., 42000.});
+    REQUIRE(found.at("warnings").size() == 2);
+    CHECK_THAT(found.at("warnings").at(0).at("message"), Contains("is open at 4 edges"));
+    CHECK_THAT(found.at("warnings").at(1).at("message"),
+               Contains("near with `scale: 0.001` and `rpy_deg: [90, 0, 0]`"));
+    const Result solved = work.run("solve", file, "--max-iterations 1 --quiet --json --out out");
+    CHECK(solved.json().at("warnings") == found.at("warnings"));
+    CHECK_THAT(work.run("solve", file, "--max-iterations 1 --out out").err,
+               Contains("warning: environment.obstacles[0].mesh.file"));
 }

@@ -13,6 +13,7 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/exports/export_format.hpp"
 #include "downwash/exports/setpoints.hpp"
+#include "downwash/scene/solid_surface.hpp"
 
 using namespace downwash;
 using nlohmann::json;
@@ -320,6 +321,71 @@ TEST_CASE("glTF moves vehicle and arm along the flight") {
             CHECK(number(output, 4 * last + 1) ==
                   Approx(std::sin(record().flight.find(angle)->back() / 2)).margin(1e-6));
         }
+    }
+}
+
+TEST_CASE("glTF far from the world's origin is as exact as near to it") {
+    RunRecord far = record();
+    const PlaneOfMotion plane({91234.5, 83456.7, 512.3}, 0.5);
+    far.problem.plane = plane;
+    far.problem.obstacles = {{"near", Box{{8, 6, 0.6}}, {91237.1, 83458.2, 518.6}, {0, 0, 0.5}},
+                             {"origin", Sphere{1}, {0.25, 0.5, 0.75}, {}}};
+    const std::string file = written("glb", far);
+    const std::size_t json_size = word_at(file, 12);
+    const json document = json::parse(file.substr(20, json_size));
+    const json& nodes = document["nodes"];
+    const auto numbers_at = [&](const json& accessor) {
+        const auto offset = document["bufferViews"][accessor["bufferView"].get<std::size_t>()]["byteOffset"];
+        std::vector<float> values(3 * accessor["count"].get<std::size_t>());
+        std::memcpy(values.data(), file.data() + 20 + json_size + 8 + offset.get<std::size_t>(), 4 * values.size());
+        return values;
+    };
+    const auto moved_by = [](const json& node) { return node.value("translation", std::vector<double>{0, 0, 0}); };
+    const json& top = nodes[document["scenes"][0]["nodes"][0].get<std::size_t>()];
+    REQUIRE(top["children"].size() == 1);
+    const json& origin = nodes[top["children"][0].get<std::size_t>()];
+    CHECK(origin["name"] == "origin");
+    CHECK(moved_by(origin) == std::vector<double>{91000, 83000, 1000});
+    std::size_t compared = 0;
+    for (const json& child : origin["children"]) {
+        const json& node = nodes[child.get<std::size_t>()];
+        for (std::size_t i = 0; i < far.problem.obstacles.size(); ++i) {
+            if (node["name"] != far.problem.obstacles[i].name) {
+                continue;
+            }
+            const TriangleMesh expected = surface_of(far.problem.obstacles[i]);
+            const json& primitive = document["meshes"][node["mesh"].get<std::size_t>()]["primitives"][0];
+            const auto found =
+                numbers_at(document["accessors"][primitive["attributes"]["POSITION"].get<std::size_t>()]);
+            REQUIRE(found.size() == 3 * expected.vertices_m.size());
+            for (std::size_t k = 0; k < found.size(); ++k) {
+                const double place = moved_by(origin)[k % 3] + moved_by(node)[k % 3] + static_cast<double>(found[k]);
+                REQUIRE(place == Approx(expected.vertices_m[k / 3][k % 3]).epsilon(0).margin(1e-4));
+            }
+            ++compared;
+        }
+    }
+    CHECK(compared == 2);
+    const json& animation = document["animations"][0];
+    for (const json& channel : animation["channels"]) {
+        if (channel["target"]["path"] == "translation") {
+            const json& sampler = animation["samplers"][channel["sampler"].get<std::size_t>()];
+            const auto found = numbers_at(document["accessors"][sampler["output"].get<std::size_t>()]);
+            REQUIRE(found.size() == 3 * far.flight.rows());
+            for (std::size_t row = 0; row < far.flight.rows(); ++row) {
+                const Vector3 expected =
+                    plane.to_world((*far.flight.find("x_m"))[row], 0, (*far.flight.find("z_m"))[row]);
+                for (std::size_t k = 0; k < 3; ++k) {
+                    REQUIRE(moved_by(origin)[k] + static_cast<double>(found[3 * row + k]) ==
+                            Approx(expected[k]).epsilon(0).margin(1e-4));
+                }
+            }
+        }
+    }
+    const json& vehicle = nodes[animation["channels"][0]["target"]["node"].get<std::size_t>()];
+    const Vector3 start = plane.to_world(far.flight.find("x_m")->front(), 0, far.flight.find("z_m")->front());
+    for (std::size_t k = 0; k < 3; ++k) {
+        CHECK(moved_by(origin)[k] + moved_by(vehicle)[k] == Approx(start[k]).epsilon(0).margin(1e-9));
     }
 }
 

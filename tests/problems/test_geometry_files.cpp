@@ -84,7 +84,7 @@ TEST_CASE("errors of a foreign file stand where the problem names it, with their
     folder.write("bad.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 nan\n");
     CHECK(errors_with(folder, "mesh: {file: bad.stl}") ==
           "problem.yaml:8:33: environment.obstacles[1].mesh.file 'bad.stl' line 4: found 'nan', expected a finite "
-          "number of at most 1e6 in size");
+          "number of at most 1e10 in size");
     folder.write("bad.stl", binary_stl(pole_triangles()).substr(0, 600));
     CHECK(errors_with(folder, "mesh: {scale: 2, file: bad.stl}") ==
           "problem.yaml:8:43: environment.obstacles[1].mesh.file 'bad.stl' byte 80: says 12 triangles, expected 84 + "
@@ -126,14 +126,135 @@ TEST_CASE("surfaces that cannot be placed are errors at their obstacle") {
 
 TEST_CASE("more triangles than a scene holds are not even kept") {
     const TestFolder folder;
-    std::string fan = "v 0 100 0\nv 1 100 0\nv 0 101 0\nf";
-    for (int i = 0; i < 1'200'002; ++i) {
-        fan += " " + std::to_string(1 + i % 3);
+    std::string fan = "v 0 100 0\nv 1 100 0\nv 0 101 0\n";
+    for (int i = 0; i < 1'200'000; ++i) {
+        fan += "f 1 2 3\n";
     }
     folder.write("fan.obj", fan);
     CHECK(errors_with(folder, "mesh: {file: fan.obj}}\n    - {name: other, mesh: {file: fan.obj}") ==
           "problem.yaml:9:34: environment.obstacles[2].mesh.file 'fan.obj' makes 2400000 triangles and cubes of all "
           "obstacles: expected at most 2000000");
+}
+
+namespace {
+
+/// What reading the sound problem with another shape in place of its pole warns of.
+std::vector<std::string> warnings_with(const TestFolder& folder, std::string_view shape) {
+    folder.write("problem.yaml", edited(good_problem, pole, shape));
+    folder.write("robot.yaml", good_robot);
+    std::vector<std::string> warnings;
+    static_cast<void>(read_problem(folder / "problem.yaml", {}, {}, [&](const LocatedError& warning) {
+        warnings.push_back(std::to_string(warning.line) + ": " + warning.message);
+    }));
+    return warnings;
+}
+
+/// Only those about the shape.
+std::vector<std::string> shape_warnings(const TestFolder& folder, std::string_view shape) {
+    std::vector<std::string> all = warnings_with(folder, shape);
+    std::erase_if(all, [](const std::string& text) { return text.find("environment.obstacles") == std::string::npos; });
+    return all;
+}
+
+std::vector<Triangle> scaled(std::vector<Triangle> triangles, double scale, const Vector3& offset) {
+    for (Triangle& triangle : triangles) {
+        for (Vector3& corner : triangle) {
+            corner = scale * corner + offset;
+        }
+    }
+    return triangles;
+}
+
+std::string obj(const std::vector<Triangle>& triangles) {
+    std::string text;
+    for (const Triangle& triangle : triangles) {
+        for (const Vector3& v : triangle) {
+            text += "v " + to_text(v[0]) + " " + to_text(v[1]) + " " + to_text(v[2]) + "\n";
+        }
+        text += "f -3 -2 -1\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("what a reader passed over and a surface that is open are warnings at the file") {
+    const TestFolder folder;
+    using Catch::Matchers::Contains;
+    folder.write("pole.stl", binary_stl(pole_triangles()));
+    CHECK(shape_warnings(folder, "mesh: {file: pole.stl, center_m: [0, -2, 0]}").empty());
+    folder.write("pole.stl", binary_stl(pole_triangles()) + "more");
+    std::vector<std::string> found = shape_warnings(folder, "mesh: {file: pole.stl, center_m: [0, -2, 0]}");
+    REQUIRE(found.size() == 1);
+    CHECK_THAT(found[0], Catch::StartsWith("8: environment.obstacles[1].mesh.file '") &&
+                             Catch::EndsWith("pole.stl' byte 684: the last 4 bytes are behind the last triangle and "
+                                             "are ignored"));
+    auto open = pole_triangles();
+    open.pop_back();
+    folder.write("pole.stl", binary_stl(open));
+    found = shape_warnings(folder, "mesh: {file: pole.stl, center_m: [0, -2, 0]}");
+    REQUIRE(found.size() == 1);
+    CHECK_THAT(found[0], Contains("pole.stl' is open at 3 edges, one of them near [") &&
+                             Contains("] in the file: the mesh is a sheet with nothing inside"));
+    // Of a file that stands twice it is told once.
+    CHECK(shape_warnings(folder,
+                         "mesh: {file: pole.stl, center_m: [0, -2, 0]}}\n"
+                         "    - {name: b, mesh: {file: pole.stl, center_m: [0, -2, 1]}")
+              .size() == 1);
+    auto both = scaled(pole_triangles(), 1, {0, 1.5, 0});
+    both.insert(both.end(), open.begin(), open.end());
+    folder.write("pole.stl", binary_stl(both));
+    found = shape_warnings(folder, "mesh: {file: pole.stl, center_m: [0, -2, 0]}");
+    REQUIRE(found.size() == 1);
+    CHECK_THAT(found[0], Contains("1 of its 2 pieces is a sheet with nothing inside"));
+}
+
+TEST_CASE("a unit, an axis or a place that takes a mesh away is a warning with the key that brings it back") {
+    const TestFolder folder;
+    using Catch::Matchers::Contains;
+    const auto warning = [&folder](const std::vector<Triangle>& triangles, const std::string& keys) {
+        folder.write("pole.obj", obj(triangles));
+        const auto found = shape_warnings(folder, "mesh: {file: pole.obj" + keys + "}");
+        REQUIRE(found.size() <= 1);
+        return found.empty() ? "none" : found[0];
+    };
+    const auto pole_m = pole_triangles();
+    const auto pole_mm = scaled(pole_m, 1000, {});
+    std::vector<Triangle> yup;
+    for (const Triangle& triangle : scaled(pole_m, 1, {0, -2, 40})) {
+        yup.push_back({});
+        for (std::size_t i = 0; i < 3; ++i) {  // z is up, x stays
+            yup.back()[i] = {triangle[i][0], triangle[i][2], -triangle[i][1]};
+        }
+    }
+    CHECK(warning(pole_m, ", center_m: [0, -2, 0]") == "none");
+    CHECK(warning(pole_mm, ", scale: 0.001, center_m: [0, -2, 0]") == "none");
+    const std::string in_mm = warning(pole_mm, ", center_m: [0, -2, 0]");
+    CHECK_THAT(in_mm, Contains("mesh.file is 5000 m long, more than a hundred times the bounds") &&
+                          Contains("it would be near with `scale: 0.001`"));
+    CHECK_THAT(in_mm, !Contains("rpy_deg"));
+    CHECK_THAT(warning(pole_m, ", scale: 0.001, center_m: [0, -2, 0]"),
+               Contains("less than a hundredth of the bounds") && Contains("it would be near with `scale: 1`"));
+    CHECK_THAT(warning(yup, ", center_m: [0, 0, -40]"),
+               Contains("lies wholly outside of what the robot reaches") &&
+                   Contains("it would be near with `rpy_deg: [90, 0, 0]`, for a file whose y axis points up"));
+    CHECK(warning(yup, ", center_m: [0, 0, -40], rpy_deg: [90, 0, 0]") == "none");
+    CHECK_THAT(warning(scaled(yup, 1000, {}), ", center_m: [0, 0, -40]"),
+               Contains("it would be near with `scale: 0.001` and `rpy_deg: [90, 0, 0]`"));
+    CHECK_THAT(warning(scaled(pole_m, 1, {0, 400, 0}), ""),
+               Contains("lateral from 402.5 to 403.5 m") && !Contains("near with"));
+    const auto on_map = scaled(pole_m, 1, {90000, 5334000, 0});
+    CHECK_THAT(warning(scaled(pole_m, 1, {90000, 53340, 0}), ""),
+               Contains("it would be near with `offset_m: [90004, 53343, 3]`, for a file in map coordinates"));
+    folder.write("pole.obj", obj(on_map));
+    CHECK_THAT(errors_with(folder, "mesh: {file: pole.obj}"), Contains("offset_m: [90004, 5334003, 3]"));
+    CHECK(warning(on_map, ", offset_m: [90000, 5334002, 0]") == "none");
+    const Problem problem = read_with(folder, "mesh: {file: pole.obj, offset_m: [90000, 5334002, 0]}");
+    CHECK(Scene(problem.obstacles).bounds(1).low_m == Vector3{3.5, 0.5, 0});
+    // Octrees have a place, but no unit.
+    folder.write("scan.bt", cube_bt);
+    CHECK_THAT(shape_warnings(folder, "octomap: {file: scan.bt, center_m: [0, 9000, 0]}").at(0),
+               Contains("octomap.file is 3277 m long") && Contains("wholly outside") && !Contains("scale:"));
 }
 
 TEST_CASE("a problem that is written elsewhere finds its files again, and is the same problem") {
@@ -167,6 +288,7 @@ TEST_CASE("what is in a file belongs to a problem's hash, its name and format do
     CHECK(hash("mesh: {file: same.stl}") == sound);
     CHECK(hash("mesh: {file: moved.stl}") != sound);
     CHECK(hash("mesh: {file: pole.stl, scale: 1.001}") != sound);
+    CHECK(hash("mesh: {file: pole.stl, offset_m: [0, 0, 0.001]}") != sound);
     folder.write("scan.bt", cube_bt);
     const std::string scan = hash("octomap: {file: scan.bt, center_m: [0, 0, -50]}");
     std::string finer = cube_bt;

@@ -1,9 +1,11 @@
+#include <octomap/ColorOcTree.h>
 #include <octomap/OcTree.h>
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <sstream>
 #include <tuple>
+#include <type_traits>
 
 #include "../support/error_of.hpp"
 #include "../support/random.hpp"
@@ -51,7 +53,8 @@ Cubes cubes_of(const OccupancyTree& tree) {
 }
 
 /// What OctoMap itself holds occupied.
-Cubes cubes_of(const octomap::OcTree& tree) {
+template <class Tree>
+requires std::is_base_of_v<octomap::AbstractOcTree, Tree> Cubes cubes_of(const Tree& tree) {
     Cubes cubes;
     for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
         if (tree.isNodeOccupied(*leaf)) {
@@ -66,7 +69,8 @@ Cubes cubes_of(const octomap::OcTree& tree) {
 }
 
 /// A tree of occupied and free voxels near the origin, some blocks of them full and so pruned to larger cubes.
-void fill(octomap::OcTree& tree, Random& random) {
+template <class Tree>
+void fill(Tree& tree, Random& random) {
     const int corner = random.integer(-40, 30);
     for (int i = 0; i < 300; ++i) {
         const auto near = [&random, corner] {
@@ -123,13 +127,42 @@ TEST_CASE("What OctoMap writes is read as OctoMap holds it") {
     }
 }
 
+TEST_CASE("An octree with colours is read as the same one without them") {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        CAPTURE(seed);
+        octomap::OcTree plain(0.1);
+        octomap::ColorOcTree colored(0.1);
+        Random random(seed);
+        fill(plain, random);
+        random = Random(seed);
+        fill(colored, random);
+        for (auto leaf = colored.begin_leafs(); leaf != colored.end_leafs(); ++leaf) {
+            const auto part = [&random] { return static_cast<std::uint8_t>(random.integer(0, 255)); };
+            leaf->setColor(part(), part(), part());
+        }
+        for (const bool is_binary : {true, false}) {
+            std::stringstream of_plain, of_colored;
+            is_binary ? plain.writeBinary(of_plain) : plain.write(of_plain);
+            is_binary ? colored.writeBinary(of_colored) : colored.write(of_colored);
+            REQUIRE(of_colored.str().find("id ColorOcTree") != std::string::npos);
+            const OccupancyTree found = parse_octomap(of_colored.str(), "a.ot");
+            REQUIRE(cubes_of(found) == cubes_of(parse_octomap(of_plain.str(), "a.ot")));
+            const std::string whole = of_colored.str();
+            for (std::size_t missing = 1; missing < 20; ++missing) {
+                REQUIRE_THAT(said_of(whole.substr(0, whole.size() - missing)), Catch::Contains("the file ends after"));
+            }
+        }
+    }
+}
+
 TEST_CASE("Wrong octree headers are errors with their line") {
     REQUIRE(said_of(sound()) == "none");
     for (const auto& [bytes, said] : {
              std::pair<std::string, std::string>{
                  "", "1: found '', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'"},
              {"solid\n", "1: found 'solid', expected '# Octomap OcTree binary file' or '# Octomap OcTree file'"},
-             {with("id OcTree", "id ColorOcTree"), "3: a tree of kind 'ColorOcTree': expected OcTree"},
+             {with("id OcTree", "id OcTreeStamped"),
+              "3: a tree of kind 'OcTreeStamped': expected OcTree or ColorOcTree"},
              {with("id OcTree\n", ""), "5: the header ends: expected a line 'id' before it"},
              {with("size 4", "size -4"), "4: found '-4', expected the number of nodes"},
              {with("res 0.5", "res 0"), "5: found '0', expected a resolution from 0.0001 to 30 m"},
