@@ -220,8 +220,9 @@ void batch(benchmark::State& state, Model model, Instructions instructions, int 
     return true;
 }();
 
-/// Edges that whole searches of three seeds fly in the nominal world, up to the same iteration whatever the number of threads. Several at
-/// once share nothing but the map: what processors give to one search with as many threads can hardly be more.
+/// Edges that whole searches of three seeds fly in the nominal world, up to the same iteration whatever the number of
+/// threads. Several at once share nothing but the map: what processors give to one search with as many threads can
+/// hardly be more.
 void search(benchmark::State& state, std::uint64_t iterations, int threads, std::size_t at_once) {
     const Bridge& bridge = Bridge::get();
     SolveOptions how;
