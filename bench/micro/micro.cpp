@@ -220,8 +220,9 @@ void batch(benchmark::State& state, Model model, Instructions instructions, int 
     return true;
 }();
 
-/// Edges that whole searches of three seeds fly, up to the same iteration whatever the number of threads. Several at
-/// once share nothing but the map: what processors give to one search with as many threads can hardly be more.
+/// Edges that whole searches of three seeds fly in the nominal world, up to the same iteration whatever the number of
+/// threads. Several at once share nothing but the map: what processors give to one search with as many threads can
+/// hardly be more.
 void search(benchmark::State& state, std::uint64_t iterations, int threads, std::size_t at_once) {
     const Bridge& bridge = Bridge::get();
     SolveOptions how;
@@ -231,6 +232,7 @@ void search(benchmark::State& state, std::uint64_t iterations, int threads, std:
     for ([[maybe_unused]] auto _ : state) {
         for (const std::uint32_t seed : {1U, 2U, 3U}) {
             Problem problem = bridge.problem;
+            problem.uncertainty.reset();
             problem.planner.seed = seed;
             problem.planner.max_iterations = iterations;
             problem.planner.time_limit_s.reset();

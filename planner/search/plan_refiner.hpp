@@ -6,22 +6,13 @@
 #include <vector>
 
 #include "downwash/controllers/plan.hpp"
+#include "downwash/search/change_flights.hpp"
 #include "downwash/search/plan_changes.hpp"
 #include "downwash/search/planned_flights.hpp"
 #include "downwash/search/random.hpp"
 #include "downwash/search/search_record.hpp"
 
 namespace downwash::planning {
-
-/// A plan with all that was found out by flying it, hold included.
-struct FlownPlan {
-    std::vector<ReferencePoint> points;  ///< the first is the start, the last at rest at the goal
-    std::vector<Fleet> fleets;           ///< the vehicle in every world at each point, and after the hold
-    std::vector<double> costs;           ///< from the start up to each point
-    std::vector<double> nominal_costs;   ///< costs up to each point in the nominal world
-    std::vector<std::int64_t> ticks;     ///< from each point to the next
-    double cost = 0, nominal_cost = 0;   ///< hold included
-};
 
 /// A plan, and before it those from which it came, each a little cheaper than the one before.
 using Lineage = std::vector<Plan>;
@@ -79,13 +70,6 @@ class PlanRefiner {
         Pace pace = {};
         int batches = 0;  ///< batches in which it was worked on
     };
-    /// A changed plan that may be worth flying.
-    struct Change {
-        std::vector<ReferencePoint> points;
-        std::vector<std::int64_t> ticks;
-        std::size_t first = 0, last = 0;  ///< segments that differ from a plan that was flown
-    };
-
     /// A batch of changes that was drawn, and flown in the nominal world. Its results are those of whenever its turn
     /// comes, if nothing has changed that it was drawn from: improve() draws and flies some batches at once, as if none
     /// of them found a better plan, and throws away those that were drawn in vain.
@@ -98,51 +82,28 @@ class PlanRefiner {
         Random before;
 
         Random after;  ///< the random numbers that follow
-        std::vector<Change> changes;
-        std::vector<double> saved;   ///< saved_before_rounding() of each
-        std::vector<FleetJob> jobs;  ///< of the whole plan where the change itself is promising
-        FlightStatistics counts;     ///< to be counted when its turn comes
+        ChangeBatch flights;
     };
-    class ChangeFlight;
     [[nodiscard]] Batch next_batch();
     [[nodiscard]] bool is_due(const Batch& batch) const;
     void draw_batches();
-    void fly_nominal(std::span<Batch> batches, std::span<const Track* const> tracks);
-    void fly_in_two_steps(Batch& batch, const FlownPlan& base);
-    /// Whether a job flies a change to the end of its plan.
-    [[nodiscard]] static bool is_whole(const Change& change, const FleetJob& job);
-    [[nodiscard]] bool costs_less(const FlownPlan& base, const Change& change, const FleetJob& job, double saved) const;
 
-    [[nodiscard]] std::optional<Change> changed(const std::vector<ReferencePoint>& points,
-                                                const std::vector<std::int64_t>& ticks, double step,
-                                                FlightStatistics& counts);
+    [[nodiscard]] std::optional<ChangedPlan> changed(const std::vector<ReferencePoint>& points,
+                                                     const std::vector<std::int64_t>& ticks, double step,
+                                                     FlightStatistics& counts);
     /// A change that the plan's end is moved into the goal, so far that it uses up at most this share of the tolerance.
-    [[nodiscard]] std::optional<Change> moved_into_goal(const Change& plan, double share,
-                                                        FlightStatistics& counts) const;
-    [[nodiscard]] std::optional<Change> timed(std::vector<ReferencePoint> points,
-                                              const std::vector<std::int64_t>& old_ticks, std::size_t first,
-                                              std::size_t last, FlightStatistics& counts) const;
-    [[nodiscard]] std::optional<FlownPlan> repaired(const Change& plan);
+    [[nodiscard]] std::optional<ChangedPlan> moved_into_goal(const ChangedPlan& plan, double share,
+                                                             FlightStatistics& counts) const;
+    [[nodiscard]] std::optional<FlownPlan> repaired(const ChangedPlan& plan);
     [[nodiscard]] std::optional<FlownPlan> last_that_flies(Lineage& lineage);
     void add(FlownPlan plan, Lineage lineage);
     [[nodiscard]] Plan plan_of(const FlownPlan& flown) const;
-    [[nodiscard]] static Change as_change(const Plan& plan);
-    /// The flight of some segments, those from `first` to `last`, and of the hold after the plan's last one.
-    [[nodiscard]] FleetJob job_for(const Fleet& from, const Change& change, std::size_t first, std::size_t last) const;
-    /// The cost in the nominal world from the start up to the end of a job with which a change begins.
-    [[nodiscard]] double nominal_cost_after(const FlownPlan& base, const Change& change, const FleetJob& job) const;
-    /// Plans flown from the start to the end; nothing for those that are rejected.
-    [[nodiscard]] std::vector<std::optional<FlownPlan>> flown_whole(const std::vector<Change>& plans);
-    /// What a change saves of the time that its segments need before it is rounded up to ticks [s]. 0 unless ticks are
-    /// all that a plan costs: then it tells apart changes of the same cost.
-    [[nodiscard]] double saved_before_rounding(const FlownPlan& base, const Change& change) const;
-    [[nodiscard]] std::optional<FlownPlan> best_of(const FlownPlan& base, Batch& batch);
-    [[nodiscard]] FlownPlan flown(const FlownPlan& base, const Change& change, const FleetJob& job) const;
+    [[nodiscard]] static ChangedPlan as_change(const Plan& plan);
 
-    FlightPoint start_;
     PlannedFlights& flights_;
     Random& random_;
     PlanChanges changes_;
+    ChangeFlights change_flights_;
     std::vector<Track> tracks_;  ///< the best first
     int taken_ = 0;
     std::size_t turn_ = 0;
