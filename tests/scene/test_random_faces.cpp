@@ -44,8 +44,9 @@ FaceWithHoles some_face_with_holes(Random& random) {
         face.outline.push_back(p);
     };
     const int count = random.integer(1, 5);
+    add({-1.5, -1.25, 0});
     for (int i = 0; i < count; ++i) {
-        add({3. * i - random.uniform(0.8, 1.5), -random.uniform(1, 2), 0});
+        add({3. * i - random.uniform(0.8, 1.4), -random.uniform(1, 2), 0});
         add({3. * i, -random.uniform(1, 2), 0});
         Polygon hole;
         const int corners = random.integer(3, 8);
