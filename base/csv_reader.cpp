@@ -17,6 +17,30 @@ std::string count_text(std::size_t count, const char* thing) {
     return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
+/// Comments take more memory than their two bytes in a file.
+constexpr std::size_t max_comments = 1'000'000;
+
+/// What ends lines: the line feed, or the carriage return if no line feed stands outside quotation marks.
+char line_end_of(std::string_view text) {
+    bool is_begin = true;  // of a line
+    bool is_comment = false;
+    bool is_quoted = false;
+    bool has_feed = false;
+    bool has_return = false;
+    for (const char c : text) {
+        const bool is_end = c == '\n' || c == '\r';
+        is_comment = !is_end && (is_comment || (c == '#' && is_begin && !is_quoted));
+        is_quoted = is_quoted != (c == '"' && !is_comment);
+        is_begin = is_end || (is_begin && (c == ' ' || c == '\t'));
+        has_feed = has_feed || c == '\n';
+        has_return = has_return || (c == '\r' && !is_quoted);
+        if (c == '\n' && !is_quoted) {
+            return '\n';
+        }
+    }
+    return has_feed && !has_return ? '\n' : '\r';
+}
+
 std::string separator_text(char separator) {
     return separator == '\t' ? "tabs" : separator == ' ' ? "blanks" : "'" + std::string(1, separator) + "'";
 }
@@ -29,9 +53,7 @@ CsvReader::CsvReader(std::string_view bytes, LineErrors& errors, const Limits& l
         errors_.add(0, text_.error);
         errors_.throw_any();
     }
-    if (rest_.find('\n') == std::string_view::npos) {
-        line_end_ = '\r';
-    }
+    line_end_ = line_end_of(rest_);
     take_header();
     if (header_line_ == 0) {
         errors_.add(0, "holds no table: expected a line with the names of its columns, then rows");
@@ -87,13 +109,18 @@ void CsvReader::add_length_error(std::size_t count) {
         return cell.text.find_first_not_of("+-0123456789") == std::string_view::npos;
     };
     if (separator_ == ',' && count > names_.size() && std::all_of(cells_.begin(), cells_.end(), are_digits)) {
-        message += "; if its numbers have decimal commas, separate the columns by ';' or quote the numbers";
+        errors_.add(line_,
+                    message + "; if its numbers have decimal commas, separate the columns by ';' or quote the numbers");
+        errors_.throw_any();  // as all lines will be
     }
     const std::string_view first = cells_.front().text;
     const char other = separator_of(first);
-    if (count == 1 && other != separator_ && other != ' ' && first.find(other) != std::string_view::npos) {
+    std::string_view rest = first;
+    const bool is_other = other == ' ' ? separator_ != ' ' && is_number(take_word(rest)) && !rest.empty()
+                                       : other != separator_ && first.find(other) != std::string_view::npos;
+    if (count == 1 && is_other) {
         errors_.add(line_, message + "; separate it as the names, by " + separator_text(separator_));
-        errors_.throw_any();  // as all lines will be
+        errors_.throw_any();
     }
     errors_.add(line_, message);
 }
@@ -129,7 +156,7 @@ std::string CsvReader::sign_error(std::string_view cell) const {
         std::replace(as_decimal.begin(), as_decimal.end(), ',', '.');
         std::string as_thousands(cell);
         std::erase(as_thousands, ',');
-        return ", which may mean " + as_decimal + " or " + as_thousands + ": expected one of these";
+        return ", which may mean " + excerpt(as_decimal) + " or " + excerpt(as_thousands) + ": expected one of these";
     }
     return std::string(other == ',' ? ", with a comma" : ", with a point") + ", but a number in line " +
            std::to_string(decimal_line_) + " has a decimal " + (other == ',' ? "point" : "comma") +
@@ -242,14 +269,23 @@ bool CsvReader::skip_to_record() {
     for (; !rest_.empty(); drop_first_line()) {
         const std::string_view line = trimmed(first_line());
         if (line.starts_with('#')) {
-            comments_.push_back({next_line_, trimmed(line.substr(1))});
+            add_comment(line.substr(1));
         } else if (line.starts_with("\"#")) {  // as spreadsheets write a comment with a comma
-            comments_.push_back({next_line_, trimmed(line.substr(2, line.rfind('"') - 2))});
+            add_comment(line.substr(2, line.rfind('"') - 2));
         } else if (!line.empty()) {
             return true;
         }
     }
     return false;
+}
+
+void CsvReader::add_comment(std::string_view text) {
+    if (comments_.size() == max_comments) {
+        errors_.add(next_line_, "is comment " + std::to_string(max_comments + 1) + ": expected at most " +
+                                    std::to_string(max_comments));
+        errors_.throw_any();
+    }
+    comments_.push_back({next_line_, trimmed(text)});
 }
 
 bool CsvReader::is_blank(std::size_t at) const {

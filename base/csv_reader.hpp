@@ -24,9 +24,10 @@ namespace downwash {
 /// The look of the text says its dialect. Cells are separated by semicolons, tabs, commas or blanks, whichever of
 /// these the line of names has first in this order (a first line such as `sep=;` decides), and may stand in quotation
 /// marks (RFC 4180). Decimal signs are points, or commas if the first number that cannot be understood otherwise has
-/// one; `1,234` can, and is no such number. Lines end with LF, CR LF or CR. Comments begin with `#`; the line of names
-/// may be one if numbers follow it directly (numpy.savetxt). Lines without content, columns without a name (indices)
-/// and empty cells behind the last column are skipped. Encodings are those of utf8_text.
+/// one; `1,234` can, and is no such number. Lines end with LF, CR LF or CR. Comments begin with `#`, a million at most;
+/// the line of names may be one if numbers follow it directly (numpy.savetxt). Lines without content, columns without a
+/// name (indices) and empty cells behind the last column are skipped. Encodings are those of utf8_text. An error that
+/// all lines will have, such as decimal commas between commas, is told once and ends the reading.
 class DOWNWASH_EXPORT CsvReader {
  public:
     struct Limits {
@@ -84,6 +85,7 @@ class DOWNWASH_EXPORT CsvReader {
     void choose_decimal_sign();
     /// Takes comments and blank lines; false at the end.
     bool skip_to_record();
+    void add_comment(std::string_view text);
     [[nodiscard]] std::string_view first_line() const;
     void drop_first_line();
     void take_record();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -84,10 +85,11 @@ class NearPlaces {
  private:
     using Cell = std::array<std::int64_t, 3>;
 
-    /// Cells are so much larger than the distance that most places have to look into their own only.
+    /// Places in a cell are farther apart than the distance, so that it holds a hundred or so however dense they lie;
+    /// and cells are so large that a place has to look into few.
     [[nodiscard]] Cell cell_of(const Vector3& place) const {
         const auto cell = [&](std::size_t k) {
-            return static_cast<std::int64_t>(std::floor((place[k] - low_[k]) / (16 * distance_)));
+            return static_cast<std::int64_t>(std::floor((place[k] - low_[k]) / (4 * distance_)));
         };
         return {cell(0), cell(1), cell(2)};
     }
@@ -204,7 +206,7 @@ TriangleMesh with_joined_corners(TriangleMesh surface) {
     }
     const std::vector<std::uint32_t> corner = first_corners(surface.vertices_m);
     const std::vector<bool> is_at_rim = corners_of_rim(surface, corner);
-    TriangleMesh best = surface;
+    std::optional<TriangleMesh> best;
     const Extent extent = extent_of(surface);
     for (const double distance : extent.distances) {
         if (!(distance > 0) || open_edges == 0) {
@@ -217,7 +219,7 @@ TriangleMesh with_joined_corners(TriangleMesh surface) {
             best = std::move(moved);
         }
     }
-    return best;
+    return best ? *std::move(best) : std::move(surface);
 }
 
 }  // namespace downwash

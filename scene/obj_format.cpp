@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::size_t max_vertices = 3 * max_pieces;
 
+/// All faces of a file take at most so many comparisons to cut: some twenty seconds.
+constexpr std::size_t max_comparisons = 10 * max_face_comparisons;
+
 /// Faces that are bent by more, in their sizes, are worth a remark.
 constexpr double noted_bend = 0.01;
 
@@ -118,7 +121,13 @@ class Obj {
             face_.push_back(vertex_of(words[i]));
             corners_.push_back(mesh_.vertices_m[face_.back()]);
         }
-        const FaceCut cut = cut_face(corners_);
+        const FaceCut cut = cut_face(corners_, std::min(max_face_comparisons, comparisons_left_));
+        if (cut.comparisons > comparisons_left_) {
+            lines_.fail("a face of " + std::to_string(face_.size()) +
+                        " corners that is not convex, behind others that took long to cut into triangles: expected "
+                        "fewer corners of such faces in one file; cut them into triangles");
+        }
+        comparisons_left_ -= cut.comparisons;
         if (cut.fault != FaceFault::none) {
             lines_.fail("a face of " + std::to_string(face_.size()) + " corners " + text_of(cut.fault));
         }
@@ -151,6 +160,7 @@ class Obj {
     TriangleMesh mesh_;
     std::vector<std::uint32_t> face_;  ///< the vertices of the current face
     std::vector<Vector3> corners_;     ///< and where they are
+    std::size_t comparisons_left_ = max_comparisons;
     std::size_t bent_faces_ = 0;
     std::size_t first_bent_line_ = 0;
 };

@@ -18,8 +18,6 @@ constexpr double plane_bend = 1e-9;
 constexpr double line_width = 1e-9;
 /// Edges that cross by no more, in sizes of the face, touch: the digits of files and single precision.
 constexpr double touching_width = 1e-6;
-/// Questions whether a corner is in the way of an ear, more than which an outline is not worth: some seconds.
-constexpr std::size_t max_questions = 500'000'000;
 /// Areas below this, in squares of the face's size, are rounding.
 constexpr double no_area = 1e-13;
 
@@ -107,22 +105,40 @@ bool are_parted(const Point& a, const Point& b, const Point& c, const Point& d, 
     return (of_c > least && of_d < -least) || (of_c < -least && of_d > least);
 }
 
-/// Whether two edges cross; those that only touch do not. @param distance by which ends have to lie beyond
-bool crosses_itself(const std::vector<Point>& outline, double distance) {
-    const std::size_t count = outline.size();
-    for (std::size_t i = 0; i + 2 < count; ++i) {
+/// Counts comparisons of corners and edges up to a limit.
+class Comparisons {
+ public:
+    explicit Comparisons(std::size_t max) : max_(max) {}
+
+    void count(std::size_t more = 1) { count_ += more; }
+    [[nodiscard]] std::size_t number() const { return count_; }
+    [[nodiscard]] bool are_too_many() const { return count_ > max_; }
+
+ private:
+    std::size_t max_;
+    std::size_t count_ = 0;
+};
+
+/// Whether two edges cross; those that only touch do not. Ends early when there are too many comparisons.
+/// @param distance by which ends have to lie beyond
+bool crosses_itself(const std::vector<Point>& outline, double distance, Comparisons& comparisons) {
+    struct Side {
+        Point a, b;
+        double x_low, x_high, y_low, y_high;
+    };
+    std::vector<Side> sides;
+    sides.reserve(outline.size());
+    for (std::size_t i = 0; i < outline.size(); ++i) {
         const Point& a = outline[i];
-        const Point& b = outline[i + 1];
-        const auto [x_low, x_high] = std::minmax(a.x, b.x);
-        const auto [y_low, y_high] = std::minmax(a.y, b.y);
-        for (std::size_t k = i + 2; k < count; ++k) {
-            const Point& c = outline[k];
-            const Point& d = outline[(k + 1) % count];
-            if (std::max(c.x, d.x) < x_low || std::min(c.x, d.x) > x_high || std::max(c.y, d.y) < y_low ||
-                std::min(c.y, d.y) > y_high) {
-                continue;
-            }
-            if (are_parted(a, b, c, d, distance) && are_parted(c, d, a, b, distance)) {
+        const Point& b = outline[(i + 1) % outline.size()];
+        sides.push_back({a, b, std::min(a.x, b.x), std::max(a.x, b.x), std::min(a.y, b.y), std::max(a.y, b.y)});
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& s, const Side& t) { return s.x_low < t.x_low; });
+    for (auto s = sides.begin(); s != sides.end() && !comparisons.are_too_many(); ++s) {
+        for (auto t = s + 1; t != sides.end() && t->x_low <= s->x_high; ++t) {
+            comparisons.count();
+            if (t->y_high >= s->y_low && t->y_low <= s->y_high && are_parted(s->a, s->b, t->a, t->b, distance) &&
+                are_parted(t->a, t->b, s->a, s->b, distance)) {
                 return true;
             }
         }
@@ -134,8 +150,9 @@ bool crosses_itself(const std::vector<Point>& outline, double distance) {
 class EarClipper {
  public:
     /// @param size of the face
-    EarClipper(const std::vector<Point>& outline, double size)
+    EarClipper(const std::vector<Point>& outline, double size, Comparisons& comparisons)
         : outline_(outline),
+          comparisons_(comparisons),
           touching_(touching_width * size),
           touching_area_(touching_width * size * size),
           rounding_(no_area * size * size),
@@ -148,6 +165,7 @@ class EarClipper {
         }
         find_twins();
         is_watched_.resize(count);
+        is_spike_.resize(count);
         for (std::size_t i = 0; i < count; ++i) {
             watch(i);
         }
@@ -160,7 +178,7 @@ class EarClipper {
         std::size_t at = 0;
         for (std::size_t left = outline_.size(); left > 2; --left) {
             const std::optional<std::size_t> tip = next_tip(at, left);
-            if (!tip || took_too_long()) {
+            if (!tip || comparisons_.are_too_many()) {
                 return std::nullopt;
             }
             const std::size_t a = before_[*tip];
@@ -169,14 +187,13 @@ class EarClipper {
             after_[a] = c;
             before_[c] = a;
             before_[*tip] = after_[*tip] = *tip;  // gone
+            set_spike(*tip, false);
             watch(a);
             watch(c);
             at = a;  // narrow passages have their next ear here
         }
         return all;
     }
-
-    [[nodiscard]] bool took_too_long() const { return questions_ > max_questions; }
 
  private:
     /// Which points of the outline are where others are, too.
@@ -198,8 +215,16 @@ class EarClipper {
     }
     [[nodiscard]] bool is_gone(std::size_t i) const { return after_[i] == i; }
 
-    /// Keeps a point in mind that may lie in the way of an ear: one that turns to the right, or touches another.
+    void set_spike(std::size_t i, bool is_spike) {
+        spikes_ += is_spike ? 1 : 0;
+        spikes_ -= is_spike_[i] ? 1 : 0;
+        is_spike_[i] = is_spike;
+    }
+
+    /// Keeps a point in mind that may lie in the way of an ear, one that turns to the right or touches another, and the
+    /// tips of spikes.
     void watch(std::size_t i) {
+        set_spike(i, is_flat(i, rounding_) && turns_back(i));
         const bool may_block = has_twin_[i] || turn_at(i) <= rounding_;
         if (may_block && !is_watched_[i]) {
             watched_.push_back(i);
@@ -217,6 +242,7 @@ class EarClipper {
     /// The next point to clip, from `at` on: the tip of a spike, else an ear with the widest margin that there is, else
     /// a corner that lies on a line or about on it.
     std::optional<std::size_t> next_tip(std::size_t at, std::size_t left) {
+        comparisons_.count(watched_.size());
         std::erase_if(watched_, [&](std::size_t i) {
             const bool is_over = is_gone(i) || !is_watched_[i];
             is_watched_[i] = is_watched_[i] && !is_over;
@@ -228,6 +254,7 @@ class EarClipper {
         const auto first = [&](const auto& is_wanted) -> std::optional<std::size_t> {
             std::size_t i = at;
             for (std::size_t seen = 0; seen < left; ++seen, i = after_[i]) {
+                comparisons_.count();
                 if (is_wanted(i)) {
                     return i;
                 }
@@ -237,7 +264,7 @@ class EarClipper {
         const auto ear_with = [&](Margin margin) {
             return first([this, margin](std::size_t i) { return is_ear(i, margin); });
         };
-        auto tip = first([this](std::size_t i) { return is_flat(i, rounding_) && turns_back(i); });
+        auto tip = spikes_ > 0 ? first([this](std::size_t i) { return is_spike_[i]; }) : std::nullopt;
         tip = tip ? tip : ear_with(Margin::wide);
         tip = tip ? tip : ear_with(Margin::closed);
         tip = tip ? tip : first([this](std::size_t i) { return is_flat(i, rounding_); });
@@ -255,10 +282,9 @@ class EarClipper {
     }
 
     [[nodiscard]] bool is_ear(std::size_t tip, Margin margin) {
-        if (turn_at(tip) <= rounding_ || took_too_long()) {
+        if (turn_at(tip) <= rounding_ || comparisons_.are_too_many()) {
             return false;
         }
-        questions_ += watched_.size();
         Ear ear{{before_[tip], tip, after_[tip]}, {}, margin};
         for (std::size_t k = 0; k < 3; ++k) {
             const Point& a = outline_[ear.corners[k]];
@@ -267,7 +293,10 @@ class EarClipper {
                                 : margin == Margin::closed ? -rounding_
                                                            : rounding_;
         }
-        return std::none_of(watched_.begin(), watched_.end(), [&](std::size_t i) { return is_in_the_way(i, ear); });
+        return std::none_of(watched_.begin(), watched_.end(), [&](std::size_t i) {
+            comparisons_.count();
+            return is_in_the_way(i, ear);
+        });
     }
 
     struct Ear {
@@ -281,7 +310,6 @@ class EarClipper {
             return false;
         }
         const Point& p = outline_[i];
-        bool is_inside = true;
         for (std::size_t k = 0; k < 3; ++k) {
             const Point& corner = outline_[ear.corners[k]];
             const Point& next = outline_[ear.corners[(k + 1) % 3]];
@@ -290,9 +318,11 @@ class EarClipper {
                 return ear.margin != Margin::open && (lies_between(corner, next, last, outline_[before_[i]]) ||
                                                       lies_between(corner, next, last, outline_[after_[i]]));
             }
-            is_inside = is_inside && turn(corner, next, p) > ear.least_turn[k];
+            if (!(turn(corner, next, p) > ear.least_turn[k])) {
+                return false;
+            }
         }
-        return is_inside;
+        return true;
     }
 
     /// Whether p, seen from the corner of a triangle, lies between the other two.
@@ -301,12 +331,13 @@ class EarClipper {
     }
 
     const std::vector<Point>& outline_;
+    Comparisons& comparisons_;
     double touching_, touching_area_;
     double rounding_;  ///< areas up to this are none
     std::vector<std::size_t> before_, after_;
-    std::vector<bool> has_twin_, is_watched_;
+    std::vector<bool> has_twin_, is_watched_, is_spike_;
     std::vector<std::size_t> watched_;
-    std::size_t questions_ = 0;
+    std::size_t spikes_ = 0;
 };
 
 /// A face in its plane, `size` across.
@@ -338,7 +369,7 @@ void add_fan(std::size_t first, std::size_t count, FaceCut& cut) {
 
 }  // namespace
 
-FaceCut cut_face(std::span<const Vector3> corners) {
+FaceCut cut_face(std::span<const Vector3> corners, std::size_t max_comparisons) {
     FaceCut cut;
     const std::size_t count = corners.size();
     if (count == 3) {
@@ -384,14 +415,13 @@ FaceCut cut_face(std::span<const Vector3> corners) {
         cut.fault = FaceFault::too_large;
         return cut;
     }
-    if (crosses_itself(outline, touching_width * size)) {
-        cut.fault = FaceFault::crossing;
-        return cut;
-    }
-    EarClipper clipper(outline, size);
-    const auto triangles = clipper.triangles();
+    Comparisons comparisons(max_comparisons);
+    const bool is_crossing = crosses_itself(outline, touching_width * size, comparisons);
+    const auto triangles =
+        is_crossing || comparisons.are_too_many() ? std::nullopt : EarClipper(outline, size, comparisons).triangles();
+    cut.comparisons = comparisons.number();
     if (!triangles) {
-        cut.fault = clipper.took_too_long() ? FaceFault::too_large : FaceFault::crossing;
+        cut.fault = !is_crossing && comparisons.are_too_many() ? FaceFault::too_large : FaceFault::crossing;
         return cut;
     }
     for (const auto& [a, b, c] : *triangles) {

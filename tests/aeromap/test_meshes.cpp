@@ -2,6 +2,7 @@
 // must not change it.
 
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <memory>
@@ -271,6 +272,122 @@ TEST_CASE(
             }
         }
     }
+}
+
+TEST_CASE("Decks with notches of any depth as two polygons are felt as the boxes side by side") {
+    test::Random random(71);
+    double worst = 0;
+    int notched = 0;
+    for (int round = 0; round < 12; ++round) {
+        // Strips along y, from -4 m up to some height each; the polygon runs along their ends.
+        std::vector<std::array<double, 2>> outline;
+        std::vector<Obstacle> strips;
+        double x = -3;
+        for (int i = 0; i < 4; ++i) {
+            const double next = x + random.uniform(0.5, 2);
+            const double end = random.uniform(-1.5, 1.5);
+            outline.push_back({x, end});
+            outline.push_back({next, end});
+            strips.push_back({"", Box{{next - x, end + 4, 0.3}}, {(x + next) / 2, (end - 4) / 2, 0.15}, {}});
+            x = next;
+        }
+        outline.push_back({x, -4});
+        outline.push_back({-3, -4});
+        if (round % 2 == 0) {
+            std::reverse(outline.begin(), outline.end());
+        }
+        std::rotate(outline.begin(), outline.begin() + random.integer(0, 9), outline.end());
+        // Every third file has its y axis up.
+        const bool is_y_up = round % 3 == 0;
+        std::string text;
+        std::string low = "f";
+        std::string high = "f";
+        const std::size_t count = outline.size();
+        for (const double height : {0., 0.3}) {
+            for (const auto& [px, py] : outline) {
+                const Vector3 v = is_y_up ? Vector3{px, height, -py} : Vector3{px, py, height};
+                text += "v " + std::to_string(v[0]) + " " + std::to_string(v[1]) + " " + std::to_string(v[2]) + "\n";
+            }
+        }
+        for (std::size_t i = 1; i <= count; ++i) {
+            low += " " + std::to_string(i);
+            high += " " + std::to_string(2 * count + 1 - i);
+        }
+        text += low + "\n" + high + "\n";
+        for (std::size_t i = 1; i <= count; ++i) {
+            const std::size_t next = i % count + 1;
+            text += "f " + std::to_string(next) + " " + std::to_string(i) + " " + std::to_string(i + count) + " " +
+                    std::to_string(next + count) + "\n";
+        }
+        const auto surface = std::make_shared<const TriangleMesh>(parse_mesh(text, "deck.obj"));
+        const Vector3 rpy{is_y_up ? 1.5707963267948966 : 0, 0, 0};
+        const auto scene = scene_of({{"", Mesh{"", 1, surface}, {}, rpy}});
+        REQUIRE(scene->facts(0).solid_pieces == 1);
+        const DirectEffect mesh = effect_of(scene->obstacles());
+        const DirectEffect boxes = effect_of(strips);
+        for (int i = 0; i < 40; ++i) {
+            const Vector3 hub{random.uniform(-3, x), random.uniform(-2, 2), random.uniform(-0.5, -0.1)};
+            const DirectEffect::Factors factors = boxes.factors(hub);
+            worst = std::max(worst, difference(mesh.factors(hub), factors));
+            notched += factors.ceiling < 1.001 ? 1 : 0;
+        }
+    }
+    CHECK(worst < 5e-3);
+    CHECK(notched > 40);
+}
+
+TEST_CASE("An opening within a deck that a bridge of its polygon joins to the edge is felt as the boxes around it") {
+    test::Random random(72);
+    double worst = 0;
+    double least_under_deck = 10;
+    for (int round = 0; round < 8; ++round) {
+        const double x0 = random.uniform(-2, -1);
+        const double x1 = random.uniform(1, 2);
+        const double y0 = random.uniform(-1.5, -0.8);
+        const double y1 = random.uniform(0.8, 1.5);
+        std::string text;
+        for (const char* height : {" 0\n", " 0.4\n"}) {
+            for (const auto& [x, y] : {std::pair(-4., -3.), std::pair(4., -3.), std::pair(4., 3.), std::pair(-4., 3.),
+                                       std::pair(x0, y0), std::pair(x0, y1), std::pair(x1, y1), std::pair(x1, y0)}) {
+                text += "v " + std::to_string(x) + " " + std::to_string(y) + height;
+            }
+        }
+        // Around the edge, over the bridge, around the opening the other way, and back.
+        std::vector<int> outline{1, 2, 3, 4, 1, 5, 6, 7, 8, 5};
+        std::rotate(outline.begin(), outline.begin() + random.integer(0, 9), outline.end());
+        for (const int level : {8, 0}) {
+            text += "f";
+            for (const int corner : outline) {
+                text += " " + std::to_string(corner + level);
+            }
+            text += "\n";
+            std::reverse(outline.begin(), outline.end());
+        }
+        for (int i = 0; i < 8; ++i) {
+            const int corner = i + 1;
+            const int next = i / 4 * 4 + (i + 1) % 4 + 1;
+            text += "f " + std::to_string(corner) + " " + std::to_string(next) + " " + std::to_string(next + 8) + " " +
+                    std::to_string(corner + 8) + "\n";
+        }
+        const auto surface = std::make_shared<const TriangleMesh>(parse_mesh(text, "deck.obj"));
+        const auto scene = scene_of({{"", Mesh{"", 1, surface}, {}, {}}});
+        REQUIRE(scene->facts(0).solid_pieces == 1);
+        REQUIRE(scene->facts(0).open_edges == 0);
+        const DirectEffect mesh = effect_of(scene->obstacles());
+        const DirectEffect boxes =
+            effect_of({{"", Box{{x0 + 4, 6, 0.4}}, {(x0 - 4) / 2, 0, 0.2}, {}},
+                       {"", Box{{4 - x1, 6, 0.4}}, {(x1 + 4) / 2, 0, 0.2}, {}},
+                       {"", Box{{x1 - x0, y0 + 3, 0.4}}, {(x0 + x1) / 2, (y0 - 3) / 2, 0.2}, {}},
+                       {"", Box{{x1 - x0, 3 - y1, 0.4}}, {(x0 + x1) / 2, (y1 + 3) / 2, 0.2}, {}}});
+        CHECK(mesh.factors({0, 0, -0.2}).ceiling == Approx(1).margin(1e-4));
+        least_under_deck = std::min(least_under_deck, mesh.factors({3, 0, -0.2}).ceiling);
+        for (int i = 0; i < 40; ++i) {
+            const Vector3 hub{random.uniform(-3, 3), random.uniform(-2, 2), random.uniform(-0.5, -0.1)};
+            worst = std::max(worst, difference(mesh.factors(hub), boxes.factors(hub)));
+        }
+    }
+    CHECK(worst < 5e-3);
+    CHECK(least_under_deck > 1.04);
 }
 
 TEST_CASE("Rotors that may come as near as they like are forbidden where they would touch, and nowhere else") {

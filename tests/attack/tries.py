@@ -11,6 +11,7 @@ import signal
 import time
 import xml.dom.minidom
 
+import foreign
 import mutations
 from program import GOOD_CODES, Finding, Program
 
@@ -100,16 +101,64 @@ class Problems(Attack):
 
 
 class Geometry(Attack):
-    """Damaged meshes and octrees."""
+    """Damaged meshes and octrees, as other programs write them too."""
+
+    def prepare(self):
+        shutil.copytree(self.problems / "robots", self.folder / "robots")
+        self.files = {file.name: file.read_bytes() for kind in ("meshes", "maps") for file in (self.problems / kind).iterdir()}
+        corners = [[-12, -4], [12, -4], [12, 4], [3, 4], [3, -2], [-3, -2], [-3, 4], [-12, 4]]
+        self.files["doorway.obj"] = foreign.deck(corners, 10, 10.4).encode()
+        self.files["map.obj"] = foreign.deck(corners, 523.1, 523.5, offset=(691234.5, 5334567.8)).encode()
+        stl = self.files["girder.stl"]
+        self.files["rounded.stl"] = foreign.noisy_stl(stl, random.Random(1), 1e-3)
+        self.files["holed.stl"] = foreign.noisy_stl(stl, random.Random(2), 1e-3, missing=3, doubled=5, turned=5)
+        self.files["color.ot"] = foreign.color_octree(random.Random(3))
 
     def attempt(self, draw):
-        for kind in ("meshes", "maps", "robots"):
-            shutil.copytree(self.problems / kind, self.folder / kind, dirs_exist_ok=True)
-        shutil.copy(self.problems / "girder_mesh.yaml", self.folder)
-        victims = [file for kind in ("meshes", "maps") for file in sorted((self.folder / kind).iterdir())]
-        victim = draw.choice(victims)
-        victim.write_bytes(mutations.damaged(victim.read_bytes(), draw))
-        self.program.run("check", "girder_mesh.yaml", codes={0, 2}, limit_s=120)
+        name = draw.choice(sorted(self.files))
+        data = self.files[name]
+        if draw.random() < 0.9:
+            data = mutations.damaged(data, draw)
+        (self.folder / name).write_bytes(data)
+        keys = f"octomap: {{file: {name}" if name.endswith((".bt", ".ot")) else f"mesh: {{file: {name}, scale: {draw.choice([1, 0.001])}"
+        (self.folder / "geometry.yaml").write_text(
+            "schema: downwash/problem/v1\nname: geometry\nrobot: robots/ars_lrm.yaml\nenvironment:\n"
+            "  bounds: {x_m: [-9, 6], z_m: [0.5, 10]}\n  obstacles:\n"
+            "    - {name: ground, box: {size_m: [60, 60, 1], center_m: [0, 0, -0.5]}}\n"
+            f"    - {{name: thing, {keys}, center_m: [0, {draw.choice([0, 30])}, 0]}}}}\n"
+            "start: {x_m: -7, z_m: 8.5, arm_deg: 90}\ngoal: {configuration: {x_m: 2, z_m: 7.5, arm_deg: 90}}\n")
+        self.program.run("check", "geometry.yaml", codes={0, 2}, limit_s=120)
+
+
+class Tables(Attack):
+    """Measurements, tables of K and grids in any dialect and encoding, whole or damaged, by every command that reads them."""
+
+    def prepare(self):
+        self.problem("bridge_inspection")
+        self.program.run("aeromap", "build", "bridge_inspection.yaml", "--step", "1", "-o", "grid.csv", codes={0})
+        self.grid = (self.folder / "grid.csv").read_text()
+        self.table = "z_over_r,factor\n" + "".join(f"{z},{1 + 0.3 / (1 + z) ** 2}\n" for z in (0.3, 0.5, 1, 1.5, 2, 3, 5))
+        self.data = self.table.replace("factor", "thrust_ratio")
+
+    def attempt(self, draw):
+        kind = draw.choice(["grid", "table", "data"])
+        data = foreign.written(getattr(self, kind), draw)
+        is_damaged = draw.random() < 0.7
+        if is_damaged:
+            data = mutations.damaged(data, draw)
+        (self.folder / "file.csv").write_bytes(data)
+        if kind == "grid":
+            command = ["aeromap", "info", "file.csv"]
+        elif kind == "data":
+            command = draw.choice([["aeromap", "compare", "file.csv"], ["aeromap", "fit", "file.csv", "--model", "sanchez-cuevas"]])
+        else:
+            problem = self.problem("bridge_inspection")
+            problem.write_text(problem.read_text() + "aero: {ground: {model: table, file: file.csv}}\n")
+            command = ["check", problem]
+        result = self.program.run(*command, codes={0, 2} if is_damaged else {0}, limit_s=120)
+        said = result.stderr.decode(errors="replace")
+        if result.returncode == 2 and not any(name in said for name in ("file.csv", "bridge_inspection.yaml")):
+            raise Finding(f"an error does not name its file: {said[:500]}")
 
 
 class Results(Attack):
@@ -348,7 +397,8 @@ class Kind:
 
 KINDS = [
     Kind("problems", 3500, Problems),
-    Kind("geometry", 350, Geometry),
+    Kind("geometry", 700, Geometry),
+    Kind("tables", 700, Tables),
     Kind("results", 1600, Results),
     Kind("robots", 360, Robots),
     Kind("kills", 400, Kills),

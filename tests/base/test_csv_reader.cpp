@@ -167,6 +167,14 @@ TEST_CASE("quoted cells hold separators, quotation marks and ends of lines") {
     CHECK(error_of("z,k\n1,2\n\"1,2\n3,4\n") == "t.csv:3:1: this quotation mark opens a cell that none closes");
     CHECK(error_of("z,k\n1,\"2\"3\n") ==
           "t.csv:2:6: text follows a closing quotation mark: expected the end of the cell");
+    // Other ends of lines within cells, and marks that are none, do not change what ends the lines.
+    for (const std::string end : {"\n", "\r", "\r\n"}) {
+        const Table other = read("# 13\" and" + end + "z,k,note" + end + "1,2,\"a\nb\"" + end + "3,4,\"c\rd\"" + end);
+        CHECK(other.z == std::vector{1.0, 3.0});
+        CHECK(other.k == std::vector{2.0, 4.0});
+        CHECK(other.notes == std::vector<std::string>{"a\nb", "c\rd"});
+        CHECK(other.comments == std::vector<std::string>{"13\" and"});
+    }
     // The place of a cell is where it stands, also behind an end of line.
     CHECK(error_of("note,z,k\n\"a\nb\",1,x\n") == "t.csv:3:6: k is 'x': expected a finite number");
 }
@@ -189,8 +197,8 @@ TEST_CASE("what the look of a number does not say is an error that says how to w
         "t.csv:3:1: z is '1.234', with a point, but a number in line 2 has a decimal comma: expected one decimal sign "
         "in the whole file, and none between thousands");
     CHECK(error_of(head + "1.234,5;2\n") == "t.csv:2:1: z is '1.234,5': expected a number from -1000000 to 1000000");
-    // Decimal commas between commas.
-    CHECK(error_of("z,k\n0,5,1,21\n") ==
+    // Decimal commas between commas: told once, though it is so in every line.
+    CHECK(error_of("z,k\n0,5,1,21\n0,7,1,1\n0,9,1,0\n") ==
           "t.csv:2: holds 4 cells: expected 2, one for each column of line 1; if its numbers have decimal commas, "
           "separate the columns by ';' or quote the numbers");
     CHECK(read(head + "\xE2\x88\x92"
@@ -202,11 +210,13 @@ TEST_CASE("what is no table is an error with its line") {
     const std::string no_table = "t.csv: holds no table: expected a line with the names of its columns, then rows";
     CHECK(error_of("") == no_table);
     CHECK(error_of("# only this\n;;;\n") == no_table);
-    CHECK(error_of("z,k\n1,2,3\n1\n") ==
-          "t.csv:2: holds 3 cells: expected 2, one for each column of line 1; if its "
-          "numbers have decimal commas, separate the columns by ';' or quote the numbers\n"
+    CHECK(error_of("z,k\na,2,3\n1\n") ==
+          "t.csv:2: holds 3 cells: expected 2, one for each column of line 1\n"
           "t.csv:3: holds 1 cell: expected 2, one for each column of line 1");
     CHECK(error_of("z,k\n1;2\n3;4\n") ==
+          "t.csv:2: holds 1 cell: expected 2, one for each column of line 1; separate it as "
+          "the names, by ','");
+    CHECK(error_of("z,k\n0.5 1.21\n0.7 1.1\n") ==
           "t.csv:2: holds 1 cell: expected 2, one for each column of line 1; separate it as "
           "the names, by ','");
     CHECK(error_of("z,k,z\n") == "t.csv:1:5: the column 'z' occurs twice");
@@ -227,6 +237,11 @@ TEST_CASE("what is no table is an error with its line") {
     }
     CHECK(error_of(many) == "t.csv:1002: is row 1001: expected at most 1000");
     CHECK(error_of("z,k\n" + std::string(100000, ',')) == "none");  // a row without content
+    std::string comments;
+    for (int i = 0; i <= 1'000'000; ++i) {
+        comments += "#\n";
+    }
+    CHECK(error_of(comments + "z,k\n1,2\n") == "t.csv:1000001: is comment 1000001: expected at most 1000000");
 }
 
 TEST_CASE("a number shows how finely it is written") {

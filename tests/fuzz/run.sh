@@ -18,9 +18,11 @@ failed=()
 for name in "${names[@]}"; do
     corpus=$build/corpus/$name
     log=$build/found/$name.log
+    dictionary=()
+    [[ -f dictionaries/$name.dict ]] && dictionary=("-dict=dictionaries/$name.dict")
     mkdir -p "$corpus" "$build/found"
     if UBSAN_OPTIONS=print_stacktrace=1 "$build/fuzzers/fuzz_$name" -max_total_time="$seconds" -timeout=20 \
-        -rss_limit_mb=2048 -max_len=65536 -verbosity=0 -print_final_stats=1 -artifact_prefix="$build/found/$name-" \
+        -rss_limit_mb=2048 -max_len=65536 -verbosity=0 -print_final_stats=1 -artifact_prefix="$build/found/$name-" "${dictionary[@]}" \
         "$corpus" "seeds/$name" >"$log" 2>&1; then
         printf '%s: nothing found in %d s, %s inputs\n' "$name" "$seconds" \
             "$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")"

@@ -1,5 +1,9 @@
+#include <algorithm>
+#include <cstdio>
+
 #include "../support/error_of.hpp"
 #include "../support/mesh_bytes.hpp"
+#include "../support/random.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "edits.hpp"
 
@@ -207,6 +211,65 @@ TEST_CASE("what a reader passed over and a surface that is open are warnings at 
     found = shape_warnings(folder, "mesh: {file: pole.stl, center_m: [0, -2, 0]}");
     REQUIRE(found.size() == 1);
     CHECK_THAT(found[0], Contains("1 of its 2 pieces is a sheet with nothing inside"));
+}
+
+TEST_CASE("nobody starts inside a caisson, however its file is rounded, turned or doubled") {
+    const TestFolder folder;
+    Random random(1);
+    // The sound problem starts at x -4 m, z 2 m.
+    const std::vector<Triangle> caisson = box_triangles({-6, -4, -1}, {-2, 4, 5});
+    const auto rounded = [&random](std::vector<Triangle> triangles) {
+        for (Triangle& triangle : triangles) {
+            for (Vector3& corner : triangle) {
+                for (double& x : corner) {
+                    x += 1e-6 * random.integer(-1, 1);
+                }
+            }
+        }
+        return triangles;
+    };
+    const auto with_more = [&caisson](const std::vector<Triangle>& more) {
+        std::vector<Triangle> all = caisson;
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    };
+    const auto turned = [](std::vector<Triangle> triangles, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            std::swap(triangles[i][0], triangles[i][1]);
+        }
+        return triangles;
+    };
+    const std::string collision = "start is in collision with an obstacle";
+    for (const std::vector<Triangle>& solid :
+         {caisson, turned(caisson, 1), turned(caisson, 7), turned(caisson, 12), with_more(caisson),
+          with_more(turned(caisson, 12)), with_more(box_triangles({-1, -1, -1}, {1, 1, 1}))}) {
+        folder.write("pole.stl", ascii_stl(solid));
+        CHECK_THAT(errors_with(folder, "mesh: {file: pole.stl}"), Catch::Contains(collision));
+        for (int i = 0; i < 5; ++i) {
+            folder.write("pole.stl", ascii_stl(rounded(solid)));
+            CHECK_THAT(errors_with(folder, "mesh: {file: pole.stl}"), Catch::Contains(collision));
+        }
+    }
+    for (std::size_t missing = 0; missing < caisson.size(); ++missing) {
+        std::vector<Triangle> rest = caisson;
+        rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(missing));
+        folder.write("pole.stl", ascii_stl(rounded(rest)));
+        const std::vector<std::string> warnings = shape_warnings(folder, "mesh: {file: pole.stl}");
+        REQUIRE(warnings.size() == 1);
+        CAPTURE(missing, warnings[0]);
+        CHECK_THAT(warnings[0], Catch::Contains("is open at 3 edges, one of them near ["));
+        Vector3 place{};
+        const std::size_t at = warnings[0].find("near [");
+        REQUIRE(std::sscanf(warnings[0].c_str() + at, "near [%lf, %lf, %lf]", &place[0], &place[1], &place[2]) == 3);
+        double off = 1;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vector3& a = caisson[missing][k];
+            const Vector3& b = caisson[missing][(k + 1) % 3];
+            const Vector3 way = place - 0.5 * (a + b);
+            off = std::min(off, dot(way, way));
+        }
+        CHECK(off < 1e-10);
+    }
 }
 
 TEST_CASE("a unit, an axis or a place that takes a mesh away is a warning with the key that brings it back") {
