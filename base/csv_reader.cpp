@@ -126,6 +126,7 @@ void CsvReader::add_length_error(std::size_t count) {
 }
 
 std::optional<double> CsvReader::number(std::size_t column, double low, double high) {
+    is_number_[column] = true;
     const std::string_view text = cell(column);
     const auto value = decimal_number(text, decimal_sign_);
     if (value && *value >= low && *value <= high) {
@@ -139,6 +140,16 @@ std::optional<double> CsvReader::number(std::size_t column, double low, double h
     }
     add_error(column, names_[column] + " is '" + excerpt(text) + "'" + expected);
     return std::nullopt;
+}
+
+CsvFacts CsvReader::facts() const {
+    CsvFacts facts{separator_, decimal_sign_, rows_, {}, {}};
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+        if (!names_[i].empty()) {
+            (is_number_[i] ? facts.used : facts.others).push_back(names_[i]);
+        }
+    }
+    return facts;
 }
 
 void CsvReader::add_error(std::size_t column, const std::string& message) {
@@ -230,6 +241,7 @@ void CsvReader::name_columns() {
         }
         names_.push_back(name);
         header_places_.push_back(cells_[i].place);
+        is_number_.push_back(false);
     }
     errors_.throw_any();
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "downwash/base/csv_facts.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/base/line_errors.hpp"
 #include "downwash/base/text_encoding.hpp"
@@ -70,6 +71,9 @@ class DOWNWASH_EXPORT CsvReader {
     /// Adds an error at a cell of the current row.
     void add_error(std::size_t column, const std::string& message);
 
+    /// The dialect, the rows so far, and the columns of which number() was asked so far.
+    [[nodiscard]] CsvFacts facts() const;
+
     /// All comments so far.
     [[nodiscard]] std::span<const Comment> comments() const noexcept { return comments_; }
 
@@ -113,6 +117,7 @@ class DOWNWASH_EXPORT CsvReader {
     std::size_t decimal_line_ = 0;  ///< where a number shows the sign; 0 if none does
 
     std::vector<std::string> names_;
+    std::vector<bool> is_number_;  ///< of each column, whether it was read as numbers
     std::vector<std::size_t> header_places_;
     std::size_t header_line_ = 0;
     std::vector<Comment> comments_;

@@ -193,7 +193,9 @@ void add_place_warning(const Obstacle& obstacle, const std::string& key, const P
     if (!remedy && is_outside) {
         remedy = offset_for(obstacle);
     }
-    warnings.push_back({key, what + (remedy ? "; it would be near with " + *remedy : "")});
+    warnings.push_back({key, what + (remedy ? "; it would be near with " + *remedy
+                                            : "; check its place and its unit, or leave it out if the robot never "
+                                              "gets there")});
 }
 
 void add_surface_warnings(const std::string& file, const TriangleMesh& surface, const SurfaceFacts& facts,

@@ -81,6 +81,9 @@ Robot read_robot(const std::filesystem::path& file, const std::function<void(con
     }
     throw_errors(reader);
     if (on_warning) {
+        for (const LocatedError& key : reader.outdated_keys()) {
+            on_warning(key);
+        }
         std::vector<KeyError> warnings = robot_warnings(reader.model().robot);
         for (KeyError& warning : warnings) {
             warning.key.insert(0, "robot.");

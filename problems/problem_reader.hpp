@@ -28,7 +28,7 @@ read_plannable_problem(const std::filesystem::path& file, const std::function<vo
                        const std::function<void(const LocatedError&)>& on_warning = {});
 
 /// Reads a robot from a file of its own. @throws ProblemFileError
-/// @param on_warning is told of everything that robot_warnings() finds
+/// @param on_warning is told of keys by their former names and of everything that robot_warnings() finds
 [[nodiscard]] DOWNWASH_EXPORT Robot read_robot(const std::filesystem::path& file,
                                                const std::function<void(const LocatedError&)>& on_warning = {});
 

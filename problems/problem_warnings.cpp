@@ -12,6 +12,7 @@
 #include "downwash/problems/problem_check.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/loop_margins.hpp"
+#include "downwash/simulation/robot_facts.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash {
@@ -38,15 +39,11 @@ std::string unstable_text(const std::string& where) {
     return "does not hold a hover in free air" + where + ": it is unstable there" + margins_remedy;
 }
 
-/// What a hover in free air shows with the arm up, level and down, as far as its limits allow; of the first angle only.
+/// What a hover in free air shows at the examined arm angles; of the first angle only.
 std::vector<KeyError> thin_margins(const Robot& robot) {
-    for (const double arm_deg : {-90, 0, 90}) {
-        const double arm_rad = arm_deg / degrees_per_radian;
-        if (robot.arm.is_limited && (arm_rad < robot.arm.lower_limit_rad || arm_rad > robot.arm.upper_limit_rad)) {
-            continue;
-        }
+    for (const double arm_rad : examined_arm_angles_rad(robot.arm)) {
         std::string where = " with the arm at ";
-        where.append(rounded(arm_deg)).append(" deg");
+        where.append(rounded(arm_rad * degrees_per_radian)).append(" deg");
         try {
             const auto loops = loop_margins(robot, arm_rad);
             for (const LoopInput input : all_loop_inputs) {
@@ -94,7 +91,8 @@ std::vector<KeyError> overlapping_discs(const Robot& robot) {
         if (discs.are_level) {
             return {{"rotors.positions_m", rotors_text(discs) + " " + rounded(discs.apart_m) +
                                                " m apart, less than two radii, " + rounded(2 * robot.rotors.radius_m) +
-                                               " m: their discs overlap"}};
+                                               " m: their discs overlap; move them apart, or give the radius "
+                                               "of one rotor in rotors.radius_m"}};
         }
     }
     return {};
@@ -190,7 +188,7 @@ std::vector<KeyError> gains_of_zero(const Robot& robot) {
     for (const HoldingGain& gain :
          std::visit([](const auto& law) { return holding_gains(law); }, robot.controller.law)) {
         if (gain.value == 0 && !gain.is_inherited) {
-            warnings.push_back({gain.key, "is 0: nothing holds what it controls in place"});
+            warnings.push_back({gain.key, "is 0: nothing holds what it controls in place; expected more than 0"});
         }
     }
     return warnings;
@@ -242,7 +240,9 @@ std::vector<KeyError> no_margin(const Problem& problem) {
         return {};
     }
     return {{"planner.safety_margin_m",
-             "is 0: plans may pass obstacles at any distance above 0, and the least deviation is a collision"}};
+             "is 0: plans may pass obstacles at any distance above 0, and the least deviation is a collision; expected "
+             "what "
+             "the vehicle may be off its reference, 0.05 by default"}};
 }
 
 /// A vehicle that need not move.
@@ -256,7 +256,10 @@ std::vector<KeyError> goal_at_start(const Problem& problem) {
     if (!is_met(error)) {
         return {};
     }
-    return {{"goal", "is met at the start already: its tolerance is larger than the way there"}};
+    return {
+        {"goal",
+         "is met at the start already: its tolerance is larger than the way there; expected a smaller tolerance, or "
+         "another place"}};
 }
 
 /// References may ask for more force than all rotors together have. It is no error: the other limits of motion may keep
@@ -273,7 +276,9 @@ std::vector<KeyError> thrust_beyond_rotors(const Problem& problem) {
     return {{"motion.max_thrust_ratio", "is " + to_text(*ratio) + ", and the rotors give " +
                                             rounded(greatest_n / weight_n) + " times the weight at most (" +
                                             rounded(greatest_n) + " N of " + rounded(weight_n) +
-                                            " N): flights cannot follow references that ask for more"}};
+                                            " N): flights cannot follow references that ask for more; expected "
+                                            "at most " +
+                                            rounded(greatest_n / weight_n)}};
 }
 
 /// An uncertainty in which nothing is uncertain.
@@ -287,7 +292,10 @@ std::vector<KeyError> exact_uncertainty(const Problem& problem) {
     if (!std::ranges::all_of(world_parameters_of(problem.robot), is_exact)) {
         return {};
     }
-    return {{"uncertainty", "leaves nothing uncertain: all worlds are alike, and a certificate says nothing"}};
+    return {
+        {"uncertainty",
+         "leaves nothing uncertain: all worlds are alike, and a certificate says nothing; leave out the keys that are "
+         "0, for their defaults, or the whole group"}};
 }
 
 }  // namespace

@@ -75,10 +75,11 @@ RunFolder::RunFolder(fs::path path, const Problem& problem, const std::string& p
 }
 
 RunRecord RunFolder::write(const Problem& problem, const std::string& problem_file,
-                           const std::vector<LocatedError>& warnings, const Solution& solution) {
+                           const std::vector<LocatedError>& warnings, const Solution& solution,
+                           const std::optional<InputFacts>& inputs) {
     const Execution flight = solution.execution.value_or(no_flight(problem.robot));
     RunRecord record = run_record(problem, solution, flight);
-    auto files = run_files(problem, problem_file, solution, flight, path_, warnings);
+    auto files = run_files(problem, problem_file, solution, flight, path_, warnings, inputs);
     whole_.write(files);
     for (auto& [name, content] : files) {
         if (name == "effective.yaml") {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,11 +39,11 @@ class DOWNWASH_EXPORT RunFolder {
 
     /// Writes effective.yaml, trajectory.csv, tree.csv and solution.json, which replace the run of before, its page
     /// included. Once for a folder.
-    /// @param problem_file as the user gave it   @param warnings of reading it
+    /// @param problem_file as the user gave it   @param warnings of reading it   @param inputs what of it was read
     /// @return the same run, as read_run() would read it from the folder
     /// @throws FolderError
     RunRecord write(const Problem& problem, const std::string& problem_file, const std::vector<LocatedError>& warnings,
-                    const Solution& solution);
+                    const Solution& solution, const std::optional<InputFacts>& inputs = {});
 
  private:
     std::filesystem::path path_;

@@ -186,7 +186,8 @@ RunRecord run_record(const Problem& problem, const Solution& solution, const Exe
 std::vector<std::pair<std::string, std::string>> run_files(const Problem& problem, const std::string& problem_file,
                                                            const Solution& solution, const Execution& flight,
                                                            const fs::path& folder,
-                                                           const std::vector<LocatedError>& warnings) {
+                                                           const std::vector<LocatedError>& warnings,
+                                                           const std::optional<InputFacts>& inputs) {
     std::vector<std::pair<std::string, std::string>> files{{"effective.yaml", effective_yaml(problem, folder)},
                                                            {"trajectory.csv", trajectory_csv(flight)},
                                                            {"tree.csv", tree_csv(solution.tree, problem.axes())}};
@@ -195,7 +196,7 @@ std::vector<std::pair<std::string, std::string>> run_files(const Problem& proble
                               {files[2].first, sha256_hex(files[2].second)}};
     files.emplace_back(
         solution_name,
-        solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings, problem.axes()},
+        solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings, problem.axes(), inputs},
                       digests));
     return files;
 }

@@ -36,10 +36,11 @@ struct RunRecord {
 /// The files that a run leaves in a folder: names and contents, in the order in which they are to be written.
 /// solution.json is the last: until it is there, what is in the folder is no run.
 /// @param problem_file as the user gave it   @param folder in which effective.yaml will be
-/// @param warnings of reading the problem
+/// @param warnings of reading the problem   @param inputs what of it was read; empty: solution.json does not say
 [[nodiscard]] DOWNWASH_EXPORT std::vector<std::pair<std::string, std::string>> run_files(
     const Problem& problem, const std::string& problem_file, const Solution& solution, const Execution& flight,
-    const std::filesystem::path& folder, const std::vector<LocatedError>& warnings = {});
+    const std::filesystem::path& folder, const std::vector<LocatedError>& warnings = {},
+    const std::optional<InputFacts>& inputs = {});
 
 /// Reads what `solve` or `execute` left in a folder. All files have to be of the same run: solution.json holds digests
 /// of the others.

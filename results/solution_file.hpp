@@ -2,12 +2,14 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/planner/solution.hpp"
+#include "downwash/problems/input_facts.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
@@ -27,6 +29,7 @@ struct ProblemReference {
     std::string sha256;                        ///< checksum of the effective problem and every file that it refers to
     std::vector<LocatedError> warnings = {};   ///< what was found when it was read, with its places
     std::span<const Axis> axes = planar_axes;  ///< what the numbers of configurations are; static
+    std::optional<InputFacts> inputs = {};     ///< what its robot and its files became
 };
 
 /// SHA-256 digests of files of a run by their names: they belong to this solution and to no other.

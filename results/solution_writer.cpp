@@ -3,6 +3,7 @@
 #include <span>
 
 #include "downwash/base/version.hpp"
+#include "downwash/results/input_json.hpp"
 #include "downwash/results/solution_file.hpp"
 
 namespace downwash {
@@ -226,6 +227,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"interrupted", solution.interrupted},
         {"problem", {{"name", problem.name}, {"file", problem.file}, {"sha256", problem.sha256}}},
         {"warnings", warnings_json(problem.warnings)},
+        {"inputs", problem.inputs ? inputs_json(*problem.inputs) : Json()},
         {"variant", name_of(solution.variant)},
         {"algorithm", solution.algorithm},
         {"objective", objective_json(solution.objective)},

@@ -61,8 +61,12 @@ void fill_slopes(const std::vector<double>& axis, const double* values, double* 
 
 }  // namespace
 
-EffectTable::EffectTable(std::vector<double> z_over_r, std::vector<double> d_over_r, std::vector<double> factors)
-    : z_over_r_(std::move(z_over_r)), d_over_r_(std::move(d_over_r)), factors_(std::move(factors)) {
+EffectTable::EffectTable(std::vector<double> z_over_r, std::vector<double> d_over_r, std::vector<double> factors,
+                         CsvFacts csv)
+    : z_over_r_(std::move(z_over_r)),
+      d_over_r_(std::move(d_over_r)),
+      factors_(std::move(factors)),
+      csv_(std::move(csv)) {
     const std::size_t columns = depends_on_d() ? d_over_r_.size() : 1;
     std::vector<KeyError> errors;
     check_axis(z_over_r_, "z_over_r", max_z_over_r, errors);
@@ -289,7 +293,7 @@ std::shared_ptr<const EffectTable> parse_effect_table(std::string_view text, std
         factors.push_back(entry.factor);
     }
     return std::make_shared<const EffectTable>(std::move(z), has_d ? std::move(d) : std::vector<double>(),
-                                               std::move(factors));
+                                               std::move(factors), csv.facts());
 }
 
 std::shared_ptr<const EffectTable> read_effect_table(const std::filesystem::path& file) {

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "downwash/base/csv_facts.hpp"
 #include "downwash/base/export.hpp"
 
 namespace downwash {
@@ -25,14 +26,18 @@ class DOWNWASH_EXPORT EffectTable {
     /// @param z_over_r at least two distances in [0, 1000], each at least 1e-6 above the one before
     /// @param d_over_r the same in [0, 10000], or empty for a table over zeta alone
     /// @param factors K in [0, 100]; those of one zeta are adjacent, in the order of d_over_r
+    /// @param csv how the file looks that it was read from, if any
     /// @throws InputError
-    EffectTable(std::vector<double> z_over_r, std::vector<double> d_over_r, std::vector<double> factors);
+    EffectTable(std::vector<double> z_over_r, std::vector<double> d_over_r, std::vector<double> factors,
+                CsvFacts csv = {});
 
     [[nodiscard]] bool depends_on_d() const noexcept { return !d_over_r_.empty(); }
     [[nodiscard]] std::span<const double> z_over_r() const noexcept { return z_over_r_; }
     [[nodiscard]] std::span<const double> d_over_r() const noexcept { return d_over_r_; }
     /// K at the nodes; those of one zeta are adjacent.
     [[nodiscard]] std::span<const double> factors() const noexcept { return factors_; }
+    /// How its file looks.
+    [[nodiscard]] const CsvFacts& csv() const noexcept { return csv_; }
 
     /// K over zeta at one d. Cheap to make. The table must outlive it.
     class DOWNWASH_EXPORT Curve {
@@ -67,6 +72,7 @@ class DOWNWASH_EXPORT EffectTable {
     std::vector<double> slopes_z_;  ///< dK/dzeta at the nodes; of a table over zeta alone
     std::vector<double> slopes_d_;  ///< dK/d(d/R) at the nodes; of a table over both
     std::vector<double> changes_;   ///< largest |K - 1| from a zeta on
+    CsvFacts csv_;
 };
 
 /// SHA-256 of a table's distances and factors, down to the last bit, as 64 hexadecimal digits.

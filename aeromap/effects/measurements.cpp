@@ -26,7 +26,7 @@ std::vector<std::string> Measurements::entries(std::string_view column) const {
 }
 
 Measurements Measurements::with(std::string_view column, std::string_view entry) const {
-    Measurements chosen{columns, {}};
+    Measurements chosen{columns, {}, csv};
     if (const auto cell = index(column)) {
         for (const Measurement& point : points) {
             if (point.cells[*cell] == entry) {
@@ -46,7 +46,7 @@ Measurements parse_measurements(std::string_view text, std::string_view name) {
     errors.throw_any();
     const auto sigma = csv.find("sigma");
     const auto tilt = csv.find("tilt_deg");
-    Measurements measurements{csv.names(), {}};
+    Measurements measurements{csv.names(), {}, {}};
     while (csv.next()) {
         Measurement point{0, 0, 0, std::nullopt, csv.line(), {}};
         point.z_over_r = csv.number(z, 1e-6, 1000).value_or(0);
@@ -67,6 +67,7 @@ Measurements parse_measurements(std::string_view text, std::string_view name) {
         errors.add(csv.header_line(), "no rows follow: expected measurements");
     }
     errors.throw_any();
+    measurements.csv = csv.facts();
     return measurements;
 }
 

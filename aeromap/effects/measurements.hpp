@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "downwash/base/csv_facts.hpp"
 #include "downwash/base/export.hpp"
 
 namespace downwash {
@@ -25,6 +26,7 @@ struct Measurement {
 struct DOWNWASH_EXPORT Measurements {
     std::vector<std::string> columns;  ///< names of `cells`
     std::vector<Measurement> points;   ///< points in the order of the file
+    CsvFacts csv = {};                 ///< how the whole file looks
 
     /// The position of a column in `columns`, as find_column() finds it; empty if there is none of that name.
     [[nodiscard]] std::optional<std::size_t> index(std::string_view column) const;

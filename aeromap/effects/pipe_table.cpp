@@ -73,7 +73,7 @@ EffectTable points_of_pipe(const EffectTable& measured, double pipe_radii) {
     if (largest > tolerance) {
         throw_input_error("its rows leap so much that no K of points has them as means over the pipe");
     }
-    return {z, d, std::move(points)};
+    return {z, d, std::move(points), measured.csv()};
 }
 
 }  // namespace downwash

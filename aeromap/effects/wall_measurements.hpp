@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "downwash/base/csv_facts.hpp"
 #include "downwash/base/export.hpp"
 
 namespace downwash {
@@ -17,14 +18,19 @@ struct WallMeasurement {
     double moment_over_thrust_radius = 0;  ///< pitch moment over T R
 };
 
+/// The content of a file of such measurements.
+struct WallMeasurements {
+    std::vector<WallMeasurement> points;
+    CsvFacts csv;  ///< how the file looks
+};
+
 /// Reads such measurements from a CSV file in any dialect of CsvReader: a header with
 /// `distance_over_r` (in [1, 1000]), `force_over_thrust` and `moment_over_thrust_radius` (in [-10, 10]), optionally
 /// `facility`; other columns are ignored. At most 100000 rows and 16 MiB.
 /// @throws InputError with "file:line: what is wrong" for each error found
-[[nodiscard]] DOWNWASH_EXPORT std::vector<WallMeasurement> read_wall_measurements(const std::filesystem::path& file);
+[[nodiscard]] DOWNWASH_EXPORT WallMeasurements read_wall_measurements(const std::filesystem::path& file);
 
 /// Reads measurements beside walls from text; errors use `name` as the name of the file.
-[[nodiscard]] DOWNWASH_EXPORT std::vector<WallMeasurement> parse_wall_measurements(std::string_view text,
-                                                                                   std::string_view name);
+[[nodiscard]] DOWNWASH_EXPORT WallMeasurements parse_wall_measurements(std::string_view text, std::string_view name);
 
 }  // namespace downwash

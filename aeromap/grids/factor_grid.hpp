@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "downwash/base/csv_facts.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 
@@ -57,6 +58,7 @@ struct FactorGridParts {
     /// Larger than by default where the coordinates were rounded: half a unit of their last digit, along x, y and z.
     Vector3 edge_slack_m{default_edge_slack_m, default_edge_slack_m, default_edge_slack_m};
     double layer_slack_m = default_layer_slack_m;
+    CsvFacts csv = {};  ///< how the file looks that it was read from, if any
 };
 
 /// K on a regular grid of rotor hub positions, from a map of ours, a simulation or a measurement. Planar (nx x 1 x nz
@@ -80,6 +82,8 @@ class DOWNWASH_EXPORT FactorGrid {
     [[nodiscard]] const Provenance& provenance() const noexcept { return parts_.provenance; }
     [[nodiscard]] const Vector3& edge_slack_m() const noexcept { return parts_.edge_slack_m; }
     [[nodiscard]] double layer_slack_m() const noexcept { return parts_.layer_slack_m; }
+    /// How its file looks.
+    [[nodiscard]] const CsvFacts& csv() const noexcept { return parts_.csv; }
 
     /// One layer, or as many as lateral offsets.
     [[nodiscard]] std::size_t layers() const noexcept;

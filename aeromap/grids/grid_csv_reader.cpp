@@ -61,6 +61,7 @@ struct GridCsv {
     std::optional<Vector3> frame_origin_m;
     std::optional<double> frame_heading_rad;
     Provenance provenance;
+    CsvFacts facts;
 
     [[nodiscard]] bool has(std::size_t column) const { return !columns[column].empty(); }
 };
@@ -107,6 +108,7 @@ class GridCsvReader {
             errors_.add(0, "holds no row");
         }
         errors_.throw_any();
+        grid_.facts = csv_.facts();
         return std::move(grid_);
     }
 
@@ -344,6 +346,7 @@ FactorGrid parse_factor_grid(std::string_view bytes, const std::string& name, co
     FactorGridParts parts;
     NodeFinder(csv, errors).fill(parts);
     parts.provenance = std::move(csv.provenance);
+    parts.csv = std::move(csv.facts);
     const PlaneOfMotion otherwise = csv.has(y) ? PlaneOfMotion() : plane;
     parts.frame = PlaneOfMotion(csv.frame_origin_m.value_or(otherwise.origin_m()),
                                 csv.frame_heading_rad.value_or(otherwise.heading_rad()));

@@ -250,7 +250,7 @@ ExitCode fit_wall(const FitArguments& given) {
     if (given.of_tilt || !data.surface.empty() || !data.source.empty() || data.from || data.to) {
         throw UsageError("--walls takes all of DATA: expected neither --tilt-loss nor a selection");
     }
-    const WallFit fit = fit_walls(read_wall_measurements(given.data.file));
+    const WallFit fit = fit_walls(read_wall_measurements(given.data.file).points);
     if (given.as_json) {
         Json json = wall_json(fit);
         json["at_bound"] = fit.is_decay_at_bound;

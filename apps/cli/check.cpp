@@ -1,34 +1,51 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <charconv>
 #include <fstream>
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
+#include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/input_lines.hpp"
 #include "downwash/cli/output.hpp"
+#include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/campaign_reader.hpp"
-#include "downwash/problems/geometry_facts.hpp"
+#include "downwash/problems/input_facts.hpp"
 #include "downwash/problems/key_reference.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/problem_writer.hpp"
+#include "downwash/report/problem_figure.hpp"
+#include "downwash/report/problem_page.hpp"
+#include "downwash/results/input_json.hpp"
 
 namespace downwash::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct CheckArguments {
     std::vector<std::string> problems;
-    std::optional<std::string> schema;
+    std::optional<std::string> schema, picture, page;
     bool as_json = false;
+
+    [[nodiscard]] bool draws() const { return picture || page; }
 };
 
-/// The first words of a file's `schema:` line tell its kind; a problem unless they say otherwise.
+/// What a file is: "data" by its ending; "robot" or "campaign" by the first words of its `schema:` line; else
+/// "problem".
 std::string kind_of(const std::string& path) {
+    const std::string ending = fs::path(path).extension().string();
+    if (is_same_word(ending, ".csv") || is_same_word(ending, ".tsv")) {
+        return "data";
+    }
     std::ifstream file(path);
     std::string line;
     for (int i = 0; i < 200 && std::getline(file, line); ++i) {
@@ -42,9 +59,40 @@ std::string kind_of(const std::string& path) {
 }
 
 struct Findings {
-    std::vector<LocatedError> errors, warnings;
+    std::vector<LocatedError> errors;
+    std::vector<LocatedError> warnings;  ///< keys by their former names included
+    // What was read, one of them unless there are errors or the file is a campaign:
     std::optional<PlannableProblem> problem;
+    std::optional<Robot> robot;
+    std::optional<DataFacts> data;
 };
+
+/// Takes a number and a colon off the beginning of a text; nothing if there is none.
+std::optional<int> taken_number(std::string_view& text) {
+    int number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end == text.data() + text.size() || *end != ':') {
+        return std::nullopt;
+    }
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()) + 1);
+    return number;
+}
+
+/// An error of a file of numbers, "file:line:column: what is wrong", with its place.
+LocatedError located(const std::string& path, const std::string& message) {
+    std::string_view text = message;
+    if (text.starts_with(path)) {
+        text.remove_prefix(path.size());
+    }
+    LocatedError error{path, 1, 1, ""};
+    if (text.starts_with(":")) {
+        text.remove_prefix(1);
+        error.line = taken_number(text).value_or(1);
+        error.column = taken_number(text).value_or(1);
+    }
+    error.message = trimmed(text);
+    return error;
+}
 
 Findings findings_in(const std::string& path) {
     Findings found;
@@ -52,14 +100,23 @@ Findings findings_in(const std::string& path) {
     try {
         const std::string kind = kind_of(path);
         if (kind == "robot") {
-            static_cast<void>(read_robot(path, on_warning));
+            found.robot = read_robot(path, on_warning);
         } else if (kind == "campaign") {
-            static_cast<void>(read_campaign(path, print_outdated, on_warning));
+            static_cast<void>(read_campaign(path, on_warning, on_warning));
+        } else if (kind == "data") {
+            found.data = read_data_file(path);
         } else {
-            found.problem = read_plannable_problem(path, {}, print_outdated, on_warning);
+            found.problem = read_plannable_problem(path, {}, on_warning, on_warning);
         }
     } catch (const ProblemFileError& error) {
         found.errors = error.errors();
+    } catch (const InputError& error) {
+        if (kind_of(path) != "data") {
+            throw;
+        }
+        for (const KeyError& each : error.errors()) {
+            found.errors.push_back(located(path, each.message));
+        }
     }
     return found;
 }
@@ -68,64 +125,98 @@ Json json_of(const LocatedError& found) {
     return {{"file", found.file}, {"line", found.line}, {"column", found.column}, {"message", found.message}};
 }
 
-/// A mesh or octree of a problem, with what it became.
-struct PlacedGeometry {
-    std::string key;
-    const Obstacle& obstacle;
-    GeometryFacts facts;
-
-    [[nodiscard]] const Mesh* mesh() const { return std::get_if<Mesh>(&obstacle.shape); }
-    [[nodiscard]] const char* surface() const {
-        return facts.surface.solid_pieces == facts.surface.pieces ? "solid"
-               : facts.surface.solid_pieces == 0                  ? "sheet"
-                                                                  : "mixed";
-    }
+/// The lists of what was read, of all files.
+struct ReadLists {
+    Json geometry = Json::array(), robots = Json::array(), data = Json::array();
 };
 
-std::vector<PlacedGeometry> geometry_of(const PlannableProblem& problem) {
-    std::vector<PlacedGeometry> all;
-    const Scene& scene = problem.model->scene();
-    for (const GeometryFacts& facts : geometry_facts(scene)) {
-        all.push_back(
-            {fmt::format("environment.obstacles[{}]", facts.obstacle), scene.obstacles()[facts.obstacle], facts});
-    }
-    return all;
-}
-
-std::string text_of(const PlacedGeometry& geometry) {
-    const GeometryFacts& facts = geometry.facts;
-    const SurfaceFacts& surface = facts.surface;
-    const BoundingBox& extent = facts.extent_world_m;
-    const auto range = [&extent](std::size_t k) {
-        return fmt::format("{} to {} m", to_text(extent.low_m[k], 6), to_text(extent.high_m[k], 6));
+/// Adds what a file became to the lists. @return the same as lines for people
+std::string add_inputs(const std::string& path, const Findings& found, ReadLists& lists) {
+    std::string text;
+    const auto add = [&text](Json& list, Json origin, const Json& facts, const std::string& line) {
+        origin.update(facts);
+        list.push_back(std::move(origin));
+        text += "  " + line + "\n";
     };
-    return fmt::format("  {}: {} of {} {}, {} piece{}, {}, x {}, y {}, z {} in the world\n",
-                       geometry.obstacle.name.empty() ? geometry.key : excerpt(geometry.obstacle.name),
-                       geometry.mesh() ? "mesh" : "octree", facts.element_count,
-                       geometry.mesh() ? "triangles" : "cubes", surface.pieces, surface.pieces == 1 ? "" : "s",
-                       geometry.surface(), range(0), range(1), range(2));
+    if (found.robot) {
+        const RobotInput robot{found.robot->name, robot_facts(*found.robot)};
+        add(lists.robots, {{"problem", nullptr}, {"file", path}}, robot_json(robot), text_of(robot));
+    }
+    if (found.data) {
+        add(lists.data, {{"problem", nullptr}}, data_json(*found.data), text_of(*found.data));
+    }
+    if (found.problem) {
+        const InputFacts inputs = input_facts(found.problem->problem, found.problem->model->scene());
+        add(lists.robots, {{"problem", path}, {"file", nullptr}}, robot_json(inputs.robot), text_of(inputs.robot));
+        for (const GeometryInput& each : inputs.geometry) {
+            add(lists.geometry, {{"problem", path}}, geometry_json(each), text_of(each));
+        }
+        for (const DataFacts& each : inputs.data) {
+            add(lists.data, {{"problem", path}}, data_json(each), text_of(each));
+        }
+    }
+    return text;
 }
 
-Json json_of(const PlacedGeometry& geometry, const std::string& path) {
-    const GeometryFacts& facts = geometry.facts;
-    const SurfaceFacts& surface = facts.surface;
-    Json json{{"problem", path},
-              {"key", geometry.key},
-              {"obstacle", geometry.obstacle.name},
-              {"kind", geometry.mesh() ? "mesh" : "octree"},
-              {"file", geometry.mesh() ? geometry.mesh()->file : std::get<Octomap>(geometry.obstacle.shape).file},
-              {geometry.mesh() ? "triangles" : "cubes", facts.element_count},
-              {"low_m", facts.extent_world_m.low_m},
-              {"high_m", facts.extent_world_m.high_m},
-              {"surface", geometry.surface()},
-              {"pieces", surface.pieces},
-              {"solid_pieces", surface.solid_pieces},
-              {"open_edges", surface.open_edges}};
-    json["open_place"] = surface.open_edges > 0 ? Json(surface.open_place) : Json();
-    return json;
+/// Checks what can be checked of --picture and --page before anything is read.
+void require_drawable_request(const CheckArguments& given) {
+    if (!given.draws()) {
+        return;
+    }
+    const char* option = given.picture ? "--picture" : "--page";
+    if (given.schema || given.problems.size() != 1) {
+        throw UsageError("{} shows one problem: expected one problem file with it", option);
+    }
+    if (const std::string kind = kind_of(given.problems.front()); kind != "problem") {
+        throw UsageError("{} shows a problem, and {} is a {} file: expected the file of a problem", option,
+                         given.problems.front(), kind);
+    }
+    if (given.picture) {
+        static_cast<void>(picture_format("--picture", *given.picture));
+        require_writable_result(*given.picture, "--picture");
+    }
+    if (given.page) {
+        if (!is_same_word(fs::path(*given.page).extension().string(), ".html")) {
+            throw UsageError("--page '{}': expected a name that ends in .html", excerpt(*given.page));
+        }
+        require_pages();
+        require_writable_result(*given.page, "--page");
+    }
+}
+
+/// Draws the problem before it is planned. Both files are made before one is written.
+void draw_problem(const CheckArguments& given, const Findings& found) {
+    const PlannableProblem& plannable = *found.problem;
+    const Problem& problem = plannable.problem;
+    std::string picture, page;
+    if (given.picture) {
+        PictureSettings settings;
+        settings.format = picture_format("--picture", *given.picture);
+        settings.threads = default_threads();
+        picture = draw(problem_figure(problem, *plannable.model), settings);
+    }
+    if (given.page) {
+        const fs::path folder = fs::absolute(*given.page).parent_path();
+        const ProblemReference reference{
+            problem.name,   given.problems.front(), problem_sha256(problem),
+            found.warnings, problem.axes(),         input_facts(problem, plannable.model->scene())};
+        page = problem_page(problem, reference, effective_yaml(problem, folder), *plannable.model, default_threads());
+    }
+    const auto write = [&given](const std::optional<std::string>& file, const std::string& content,
+                                const char* option) {
+        if (file) {
+            write_result(*file, content, option);
+            if (!given.as_json) {
+                fmt::print("{}\n", *file);
+            }
+        }
+    };
+    write(given.picture, picture, "--picture");
+    write(given.page, page, "--page");
 }
 
 ExitCode run(const CheckArguments& given) {
+    require_drawable_request(given);
     if (given.schema) {
         fmt::print("{}", json_schema(*file_kind_named(*given.schema)));
         return ExitCode::done;
@@ -135,7 +226,7 @@ ExitCode run(const CheckArguments& given) {
     }
     auto faults = Json::array();
     auto warnings = Json::array();
-    auto geometry = Json::array();
+    ReadLists lists;
     std::set<std::string> told;  // two problems may have the same robot
     for (const std::string& path : given.problems) {
         const Findings found = findings_in(path);
@@ -151,22 +242,23 @@ ExitCode run(const CheckArguments& given) {
                 warnings.push_back(json_of(warning));
             }
         }
+        const std::string lines = add_inputs(path, found, lists);
         if (found.errors.empty() && !given.as_json) {
             const std::size_t count = found.warnings.size();
-            fmt::print("{}: ok{}\n", path,
-                       count == 0 ? "" : fmt::format(", {} warning{}", count, count == 1 ? "" : "s"));
+            fmt::print("{}: ok{}\n{}", path,
+                       count == 0 ? "" : fmt::format(", {} warning{}", count, count == 1 ? "" : "s"), lines);
         }
-        for (const PlacedGeometry& each : found.problem ? geometry_of(*found.problem) : std::vector<PlacedGeometry>{}) {
-            if (!given.as_json) {
-                fmt::print("{}", text_of(each));
-            }
-            geometry.push_back(json_of(each, path));
+        if (given.draws() && found.problem) {
+            draw_problem(given, found);
         }
     }
     const ExitCode code = faults.empty() ? ExitCode::done : ExitCode::bad_input;
     if (given.as_json) {
-        print_json(
-            {{"faults", std::move(faults)}, {"warnings", std::move(warnings)}, {"geometry", std::move(geometry)}});
+        print_json({{"faults", std::move(faults)},
+                    {"warnings", std::move(warnings)},
+                    {"geometry", std::move(lists.geometry)},
+                    {"robots", std::move(lists.robots)},
+                    {"data", std::move(lists.data)}});
     }
     return code;
 }
@@ -176,15 +268,22 @@ ExitCode run(const CheckArguments& given) {
 void add_check(Command program, Action& action) {
     auto [command, given] = add_command(
         program, action, "check",
-        "Check problem, robot and campaign files and report every error and warning with its line and column, and what "
-        "meshes and octrees became in the world",
+        "Check problem, robot and campaign files and files of numbers (CSV); report every error and warning with its "
+        "line and column, and on one line each what robots, meshes, octrees and tables became; with --picture or "
+        "--page, show a problem before it is planned",
         run);
-    command.add_option("PROBLEM", given.problems, "problem, robot or campaign files");
+    command.add_option("PROBLEM", given.problems,
+                       "problem, robot or campaign files, or grids, effect tables and measurements as .csv or .tsv");
     Option schema =
         command.add_option("--schema", given.schema,
                            "print the JSON Schema of a kind of file instead, for editors that complete and check YAML");
     schema.one_of({"problem", "robot", "campaign"});
-    add_json(command, given.as_json, "the errors, warnings, meshes and octrees");
+    command.add_option("--picture FILE", given.picture,
+                       "draw the problem in the plane of motion: scene, bounds, goals, and the robot at its start; a "
+                       "picture, .svg, .png or .pdf");
+    command.add_option("--page FILE", given.page,
+                       "write the same as a page, .html, with the scene in the plane and in three dimensions");
+    add_json(command, given.as_json, "the errors and warnings, and what robots, meshes, octrees and tables became");
 }
 
 }  // namespace downwash::cli

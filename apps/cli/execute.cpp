@@ -86,21 +86,21 @@ std::optional<FlownWorld> world_of(const ExecuteArguments& given, const Problem&
                       draw_world(*problem.uncertainty, problem.robot, seed_of(given, problem), *given.world));
 }
 
-void fly(const Problem& problem, bool aero, const std::optional<FlownWorld>& world, Solution& solution) {
+void fly(const Problem& problem, const FlightModel& model, bool aero, const std::optional<FlownWorld>& world,
+         Solution& solution) {
     const auto begin = std::chrono::steady_clock::now();
     const Problem flown = in_order(problem, solution.order);
-    const auto model = make_flight_model(problem);
     const FlightWorld in{world ? &*world : nullptr, 0};
-    FlightState nominal = start_state(*model, problem.start);
+    FlightState nominal = start_state(model, problem.start);
     if (world) {
         nominal.world = memory_at_start(*world, nominal.plant);
     }
-    const auto start = world && is_at_rest(problem.start) ? hovering_start(*model, nominal, aero, in) : nominal;
+    const auto start = world && is_at_rest(problem.start) ? hovering_start(model, nominal, aero, in) : nominal;
     if (!start) {
         throw std::runtime_error("in this world the vehicle cannot hover at its start: its controller diverges there");
     }
     solution.execution =
-        execute(*model, *start, solution.plan->reference, goals_of(flown), aero, in, {}, problem.energy_budget_j);
+        execute(model, *start, solution.plan->reference, goals_of(flown), aero, in, {}, problem.energy_budget_j);
     solution.execution_cost = cost_of(*solution.execution, solution.objective);
     solution.flight_wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
@@ -110,7 +110,7 @@ ExitCode run(const ExecuteArguments& given) {
     std::vector<LocatedError> warnings;
     Problem read = read_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
-        given.is_quiet ? nullptr : print_outdated, noting(warnings, given.is_quiet));
+        noting_outdated(warnings, given.is_quiet), noting(warnings, given.is_quiet));
     Solution solution = read_solution(plan_file(given.plan), read);
     require_whole_plan(given.plan);
     read = as_planned(std::move(read), solution);
@@ -124,7 +124,8 @@ ExitCode run(const ExecuteArguments& given) {
              "this plan was made for another problem, or for another version of it: its certificate says nothing "
              "here and is left out, and the status is that of this flight"});
     }
-    fly(read, given.aero == "on", world, solution);
+    const auto model = make_flight_model(read);
+    fly(read, *model, given.aero == "on", world, solution);
     if (is_other) {
         const bool is_solved = solution.execution->outcome == Outcome::ok && !read.uncertainty;
         solution.status = is_solved ? Status::solved : Status::approximate;
@@ -133,7 +134,7 @@ ExitCode run(const ExecuteArguments& given) {
         solution.execution_world = {*given.world, seed_of(given, read)};
     }
     interruption.expect_results();
-    const RunRecord record = folder.write(read, given.problem, warnings, solution);
+    const RunRecord record = folder.write(read, given.problem, warnings, solution, input_facts(read, model->scene()));
     write_page(folder.path(), record, given.threads);
     fmt::print("{}", given.as_json ? record.solution_text
                                    : summary_of(verdict_on_flight(*solution.execution), read, solution, folder.path()));

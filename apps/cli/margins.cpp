@@ -11,6 +11,7 @@
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/simulation/robot_facts.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -19,11 +20,15 @@ namespace {
 constexpr double enough_gain_db = 6;
 constexpr double enough_phase_rad = std::numbers::pi / 4;
 
-struct ArmPose {
-    const char* name;
-    double arm_rad;
-};
-constexpr ArmPose poses[] = {{"up", -std::numbers::pi / 2}, {"level", 0}, {"down", std::numbers::pi / 2}};
+/// "up", "level", "down", or the angle.
+std::string arm_name(double arm_rad) {
+    const auto is = [arm_rad](double named_rad) { return std::abs(arm_rad - named_rad) < 1e-9; };
+    constexpr double quarter_turn_rad = std::numbers::pi / 2;
+    return is(-quarter_turn_rad)  ? "up"
+           : is(0)                ? "level"
+           : is(quarter_turn_rad) ? "down"
+                                  : fmt::format("{:.0f} deg", arm_rad * degrees_per_radian);
+}
 
 struct MarginsArguments {
     std::string robot;
@@ -47,15 +52,12 @@ ExitCode run(const MarginsArguments& given) {
         fmt::print("{:<7}{:<15}{:>12}{:>14}{:>16}{:>14}\n", "arm", "loop", "gain margin", "phase margin", "crossover",
                    "delay margin");
     }
-    for (const ArmPose& pose : poses) {
-        if (robot.arm.is_limited &&
-            (pose.arm_rad < robot.arm.lower_limit_rad || pose.arm_rad > robot.arm.upper_limit_rad)) {
-            continue;
-        }
-        const auto all = loop_margins(robot, pose.arm_rad);
+    for (const double arm_rad : examined_arm_angles_rad(robot.arm)) {
+        const std::string arm = arm_name(arm_rad);
+        const auto all = loop_margins(robot, arm_rad);
         for (const LoopInput input : all_loop_inputs) {
             const LoopMargins& margins = all[static_cast<std::size_t>(input)];
-            rows.push_back({{"arm", pose.name},
+            rows.push_back({{"arm", arm},
                             {"loop", name_of(input)},
                             {"gain_margin_db", finite(margins.gain_margin_db)},
                             {"phase_margin_deg", finite(margins.phase_margin_rad * degrees_per_radian)},
@@ -63,7 +65,7 @@ ExitCode run(const MarginsArguments& given) {
                             {"delay_margin_s", finite(margins.delay_margin_s)},
                             {"is_enough", is_enough(margins)}});
             if (!given.as_json) {
-                fmt::print("{:<7}{:<15}{:>12}{:>14}{:>16}{:>14}{}\n", pose.name, name_of(input),
+                fmt::print("{:<7}{:<15}{:>12}{:>14}{:>16}{:>14}{}\n", arm, name_of(input),
                            text_of(margins.gain_margin_db, "dB"),
                            text_of(margins.phase_margin_rad * degrees_per_radian, "deg"),
                            text_of(margins.crossover_rad_s, "rad/s"), text_of(1e3 * margins.delay_margin_s, "ms"),

@@ -69,6 +69,15 @@ std::function<void(const LocatedError&)> noting(std::vector<LocatedError>& warni
     };
 }
 
+std::function<void(const LocatedError&)> noting_outdated(std::vector<LocatedError>& warnings, bool is_quiet) {
+    return [&warnings, is_quiet](const LocatedError& key) {
+        warnings.push_back(key);
+        if (!is_quiet) {
+            print_outdated(key);
+        }
+    };
+}
+
 std::string text_of(const Json& document) {
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -35,6 +35,10 @@ void print_warning(const LocatedError& warning) noexcept;
 /// Adds every warning to `warnings`, and prints it unless it is to be quiet.
 [[nodiscard]] std::function<void(const LocatedError&)> noting(std::vector<LocatedError>& warnings, bool is_quiet);
 
+/// The same for keys that a file calls by a former name.
+[[nodiscard]] std::function<void(const LocatedError&)> noting_outdated(std::vector<LocatedError>& warnings,
+                                                                       bool is_quiet);
+
 /// A document as commands print it with --json. Text from files may be any bytes; invalid UTF-8 in it is replaced.
 [[nodiscard]] std::string text_of(const Json& document);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/input_lines.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/planner_options.hpp"
@@ -71,7 +72,7 @@ ExitCode run(const SolveArguments& given) {
     std::vector<LocatedError> warnings;
     const PlannableProblem plannable = read_plannable_problem(
         given.problem, [&given](Problem& settings) { given.planner.apply_to(settings); },
-        given.is_quiet ? nullptr : print_outdated, noting(warnings, given.is_quiet));
+        noting_outdated(warnings, given.is_quiet), noting(warnings, given.is_quiet));
     const Problem& read = plannable.problem;
     const std::filesystem::path out = given.out ? std::filesystem::path(*given.out) : default_folder(read);
     require_readable_again(read, out);
@@ -92,13 +93,15 @@ ExitCode run(const SolveArguments& given) {
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = downwash::solve(plannable, options);
     }
-    const RunRecord record = folder.write(read, given.problem, warnings, solution);
+    const InputFacts inputs = input_facts(read, plannable.model->scene());
+    const RunRecord record = folder.write(read, given.problem, warnings, solution, inputs);
     // In free air there is no map. Without a map and a search there is nothing to be shown yet.
     if (solution.map != nullptr || solution.planning.iterations > 0 || !solution.interrupted) {
         write_page(folder.path(), record, given.threads);
     }
-    fmt::print("{}", given.as_json ? record.solution_text
-                                   : summary_of(verdict_on_search(solution), read, solution, folder.path()));
+    fmt::print("{}", given.as_json
+                         ? record.solution_text
+                         : summary_of(verdict_on_search(solution), read, solution, folder.path()) + input_rows(inputs));
     if (given.tries_remedies && read.uncertainty && solution.status != Status::solved && !solution.interrupted) {
         print_remedies(read, options, given.is_quiet);
     }

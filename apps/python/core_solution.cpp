@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "downwash/base/files.hpp"
 #include "downwash/base/key_error.hpp"
@@ -24,10 +25,17 @@
 namespace downwash::python {
 namespace {
 
+/// What reading the problem told: keys by their former names, then warnings.
+std::vector<LocatedError> remarks_on(const PlacedProblem& problem) {
+    std::vector<LocatedError> all = problem.outdated;
+    all.insert(all.end(), problem.warnings.begin(), problem.warnings.end());
+    return all;
+}
+
 std::string json_of(const CoreSolution& of) {
     const Problem& problem = of.of->problem();
-    return solution_json(of.solution,
-                         {problem.name, of.of->file, problem_sha256(problem), of.of->placed.warnings, problem.axes()});
+    return solution_json(of.solution, {problem.name, of.of->file, problem_sha256(problem), remarks_on(of.of->placed),
+                                       problem.axes(), input_facts(problem, of.of->model()->scene())});
 }
 
 /// Writes the page of a run, if this build brings pages.
@@ -48,7 +56,8 @@ void write(const CoreSolution& of, const std::string& path, bool force) {
     const Problem& problem = of.of->problem();
     require_readable_again(problem, path);
     RunFolder folder(path, problem, of.of->file, force);
-    const RunRecord record = folder.write(problem, of.of->file, of.of->placed.warnings, of.solution);
+    const RunRecord record = folder.write(problem, of.of->file, remarks_on(of.of->placed), of.solution,
+                                          input_facts(problem, of.of->model()->scene()));
     if (of.solution.map != nullptr || !of.solution.interrupted) {  // without a map there was no search to be shown yet
         write_page(folder.path(), record, *of.of->model(), of.solution.threads);
     }

@@ -261,6 +261,23 @@ TEST_CASE("a number shows how finely it is written") {
     check("2.", 0, 1);
 }
 
+TEST_CASE("facts tell the dialect, the rows and which columns were read as numbers") {
+    LineErrors errors("t.csv");
+    CsvReader csv(";z;note;k;\n1;0,5;a;1,5;\n\n2;1;b;1,25;\n", errors, {1000, 10});
+    CHECK(csv.facts().rows == 0);
+    while (csv.next()) {
+        CHECK(csv.number(csv.find("z").value()));
+        CHECK(csv.number(csv.find("k").value()));
+    }
+    errors.throw_any();
+    const CsvFacts facts = csv.facts();
+    CHECK(facts.separator == ';');
+    CHECK(facts.decimal_sign == ',');
+    CHECK(facts.rows == 2);
+    CHECK(facts.used == Row{"z", "k"});
+    CHECK(facts.others == Row{"note"});
+}
+
 TEST_CASE("a text becomes one cell") {
     CHECK(csv_cell("plain") == "plain");
     CHECK(csv_cell("a,\"b\"") == "\"a,\"\"b\"\"\"");

@@ -33,7 +33,7 @@ TEST_CASE("Walls that follow the law are found, and each facility's share with t
 }
 
 TEST_CASE("The default decay of walls is that of the shipped measurements, and walls are weak") {
-    const WallFit fit = fit_walls(read_wall_measurements(DOWNWASH_WALLS));
+    const WallFit fit = fit_walls(read_wall_measurements(DOWNWASH_WALLS).points);
     CHECK(fit.points == 55);
     CHECK(fit.effect.decay_radii == Approx(WallEffect{}.decay_radii).epsilon(0.05));
     // Even beside a rotor that touches the wall the force stays below 2 % of the thrust.

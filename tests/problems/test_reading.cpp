@@ -209,7 +209,7 @@ TEST_CASE("a limit of thrust that the rotors cannot give is warned of, with its 
     CHECK(
         warnings[0].message ==
         "motion.max_thrust_ratio is 2.5, and the rotors give 2.31 times the weight at most (112 N of 48.5 N): flights "
-        "cannot follow references that ask for more");
+        "cannot follow references that ask for more; expected at most 2.31");
 }
 
 TEST_CASE("an arm that does not move has one angle, and a start at another one is an error") {
@@ -223,8 +223,9 @@ TEST_CASE("an arm that does not move has one angle, and a start at another one i
 }
 
 TEST_CASE("the controller that the error of a missing one proposes flies with its defaults") {
-    const std::string_view own = "controller:\n  position: {kp: 2, kd: 2.6}\n  attitude: {kp: 8, rate_kp: 20}\n  arm: {kp: "
-                                 "30, kd: 11}\n  max_tilt_deg: 35\n";
+    const std::string_view own =
+        "controller:\n  position: {kp: 2, kd: 2.6}\n  attitude: {kp: 8, rate_kp: 20}\n  arm: {kp: "
+        "30, kd: 11}\n  max_tilt_deg: 35\n";
     const TestFolder folder;
     CHECK(folder.errors_of(good_problem, edited(good_robot, own, "controller: {type: cascaded-pid}\n")) == "sound");
 }

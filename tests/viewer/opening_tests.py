@@ -23,6 +23,13 @@ class Opening(page_test.BrowserTest):
                 self.assertEqual(self.browser.complaints(), [])
                 self.assertEqual(self.browser.requests(), [])
 
+    def test_shows_a_problem_before_it_is_planned(self):
+        self.open("unplanned")
+        self.assertEqual(self.js("return document.querySelector('#verdict-title').textContent"), "Not planned yet")
+        self.assertEqual(self.js("return document.querySelectorAll('.figures, .search, .plots, .playback').length"), 0)
+        self.assertEqual(self.js("return document.querySelectorAll('.scene-svg .at-start').length"), 1)
+        self.assertEqual(self.js("return document.querySelectorAll('.open-3d').length"), 1)
+
     def test_forbids_requests(self):
         self.open("solved")
         policy = self.js("return document.querySelector('meta[http-equiv]').content")

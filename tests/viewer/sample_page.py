@@ -348,7 +348,18 @@ def uncertified_report():
     return report
 
 
-CASES = {"solved": solved_report, "collision": failed_report, "unsolved": unsolved_report, "hostile": hostile_report,
+def unplanned_report():
+    """A problem before it is planned."""
+    report = solved_report()
+    solution = report["solution"]
+    del solution["planning"]
+    solution.update(status="unplanned", plan=None, execution=None, cost=None, certificate=None)
+    report.update(flight=None, tree=None, command=None, _columns=None)
+    return report
+
+
+CASES = {"solved": solved_report, "unplanned": unplanned_report, "collision": failed_report,
+         "unsolved": unsolved_report, "hostile": hostile_report,
          "large": large_report, "open-air": open_air_report, "solids": solids_report, "five-goals": five_goals_report,
          "crowded": crowded_report, "doubtful": doubtful_report,
          "certified": certified_report, "uncertified": uncertified_report}

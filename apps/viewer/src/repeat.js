@@ -41,8 +41,9 @@ export function make_obstacle_table({scene: {obstacles}}) {
 export function make_repeat(model) {
     const {report, solution} = model;
     const row = (name, value) => h("div", null, h("dt", null, name), h("dd", null, value));
+    const title = solution.status === "unplanned" ? "Problem and settings" : "To repeat";
     return h(
-        "section", {class: "repeat", "aria-labelledby": "repeat-title"}, h("h2", {id: "repeat-title"}, "To repeat"),
+        "section", {class: "repeat", "aria-labelledby": "repeat-title"}, h("h2", {id: "repeat-title"}, title),
         report.command ? make_command(report.command) : null,
         h("dl", {class: "pairs"}, row("version", `downwash ${report.version ?? solution.version}`),
           row("seed", String(solution.seed)),

@@ -135,7 +135,11 @@ function make_counts({solution, tree}) {
                 null)));
 }
 
+/** The panel of the search; null before there was one. */
 export function make_search(model) {
+    if (!model.solution.planning) {
+        return null;
+    }
     return h(
         "section", {class: "search", "aria-labelledby": "search-title"}, h("h2", {id: "search-title"}, "Search"),
         h("div", {class: "cards"}, make_costs(model), make_rejections(model), make_counts(model)));

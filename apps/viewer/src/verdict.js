@@ -89,6 +89,10 @@ function blocked_lines(model) {
 export function verdict_of(model) {
     const {solution, outcome} = model;
     const {execution} = solution;
+    if (solution.status === "unplanned") {
+        const line = "The page shows the problem as `downwash check` read it. The vehicle stands at its start.";
+        return {kind: "none", mark: "○", title: "Not planned yet", lines: [line]};
+    }
     if (solution.status !== "solved") {
         const title = solution.status === "approximate" && solution.certificate ?
             "A plan was found, but it is not certified" :
@@ -164,8 +168,11 @@ function figures_of(model) {
     return list;
 }
 
-/** Key figures in rows of equal length, as far as their number allows. */
+/** Key figures in rows of equal length, as far as their number allows; null before the problem is planned. */
 export function make_figures(model) {
+    if (model.solution.status === "unplanned") {
+        return null;
+    }
     const figures = figures_of(model);
     const columns = (most) => Math.ceil(figures.length / Math.ceil(figures.length / most));
     return h(

@@ -1,0 +1,104 @@
+#include "downwash/results/input_json.hpp"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "downwash/base/angles.hpp"
+#include "downwash/base/text.hpp"
+
+namespace downwash {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The number with six digits: the last bits of a margin may depend on the processor.
+Json rounded(double value) {
+    constexpr int digits = 6;
+    return std::isfinite(value) ? Json(std::strtod(to_text(value, digits).c_str(), nullptr)) : Json();
+}
+
+Json degrees(double angle_rad) {
+    return rounded(angle_rad * degrees_per_radian);
+}
+
+Json loop_json(double margin, LoopInput input, double arm_rad) {
+    return std::isfinite(margin) ? Json{{"loop", name_of(input)}, {"arm_deg", degrees(arm_rad)}} : Json();
+}
+
+std::string separator_name(char separator) {
+    return separator == '\t' ? "tab" : separator == ' ' ? "blank" : std::string(1, separator);
+}
+
+}  // namespace
+
+Json geometry_json(const GeometryInput& geometry) {
+    const GeometryFacts& facts = geometry.facts;
+    const SurfaceFacts& surface = facts.surface;
+    Json json{{"key", geometry.key},
+              {"obstacle", geometry.name},
+              {"kind", geometry.is_mesh ? "mesh" : "octree"},
+              {"file", geometry.file},
+              {geometry.is_mesh ? "triangles" : "cubes", facts.element_count},
+              {"low_m", facts.extent_world_m.low_m},
+              {"high_m", facts.extent_world_m.high_m},
+              {"surface", surface_name(surface)},
+              {"pieces", surface.pieces},
+              {"solid_pieces", surface.solid_pieces},
+              {"open_edges", surface.open_edges}};
+    json["open_place"] = surface.open_edges > 0 ? Json(surface.open_place) : Json();
+    return json;
+}
+
+Json robot_json(const RobotInput& robot) {
+    const RobotFacts& facts = robot.facts;
+    Json json{{"robot", robot.name},
+              {"mass_kg", rounded(facts.mass_kg)},
+              {"thrust_to_weight", rounded(facts.thrust_to_weight)},
+              {"reach_m", rounded(facts.reach_m)},
+              {"hover_share", rounded(facts.hover_share)},
+              {"hover_rotor", facts.hover_rotor + 1},
+              {"hover_arm_deg", degrees(facts.hover_arm_rad)}};
+    json["hovers_stably"] = facts.margins.has_value();
+    const LeastMargins none{HUGE_VAL, {}, 0, HUGE_VAL, {}, 0};
+    const LeastMargins& margins = facts.margins ? *facts.margins : none;
+    json["gain_margin_db"] = rounded(margins.gain_margin_db);
+    json["gain_margin_at"] = loop_json(margins.gain_margin_db, margins.gain_input, margins.gain_arm_rad);
+    json["phase_margin_deg"] = degrees(margins.phase_margin_rad);
+    json["phase_margin_at"] = loop_json(margins.phase_margin_rad, margins.phase_input, margins.phase_arm_rad);
+    return json;
+}
+
+Json data_json(const DataFacts& data) {
+    Json columns = Json::array();
+    for (const std::string& name : data.csv.used) {
+        columns.push_back({{"name", name}, {"unit", unit_of_column(name)}});
+    }
+    return {{"key", data.key.empty() ? Json() : Json(data.key)},
+            {"file", data.file},
+            {"kind", name_of(data.kind)},
+            {"rows", data.csv.rows},
+            {"separator", separator_name(data.csv.separator)},
+            {"decimal_sign", std::string(1, data.csv.decimal_sign)},
+            {"columns", std::move(columns)},
+            {"other_columns", data.csv.others}};
+}
+
+Json inputs_json(const InputFacts& inputs) {
+    const auto named_alone = [](Json json) {
+        json["file"] = std::filesystem::path(json["file"].get<std::string>()).filename().string();
+        return json;
+    };
+    Json geometry = Json::array(), data = Json::array();
+    for (const GeometryInput& each : inputs.geometry) {
+        geometry.push_back(named_alone(geometry_json(each)));
+    }
+    for (const DataFacts& each : inputs.data) {
+        data.push_back(named_alone(data_json(each)));
+    }
+    return {{"geometry", std::move(geometry)}, {"robot", robot_json(inputs.robot)}, {"data", std::move(data)}};
+}
+
+}  // namespace downwash
