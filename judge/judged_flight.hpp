@@ -32,6 +32,7 @@ struct JudgedRow {
 /// The figures of one flight of a plan, hover included.
 struct JudgedFlight {
     Outcome outcome = Outcome::ok;
+    bool is_lateral_collision = false;  ///< in its plane, at the same pose, the vehicle would have touched nothing
     double min_clearance_m = std::numeric_limits<double>::infinity();  ///< 0 on contact; infinity without obstacles
     double energy_j = 0;
     double duration_s = 0;

@@ -241,7 +241,7 @@ Obstacles::~Obstacles() = default;
 
 double Obstacles::clearance_m(const PlanarPose& pose) const {
     const Solids& s = *solids_;
-    Pose body = moved(vector_of(s.plane.to_world(pose.x_m, 0, pose.z_m)));
+    Pose body = moved(vector_of(s.plane.to_world(pose.x_m, pose.lateral_m, pose.z_m)));
     body.linear() = (Eigen::AngleAxisd(s.plane.heading_rad(), Eigen::Vector3d::UnitZ()) *
                      Eigen::AngleAxisd(pose.pitch_rad, Eigen::Vector3d::UnitY()))
                         .toRotationMatrix();

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <variant>
+
+#include "downwash/judge/position_loop.hpp"
 
 namespace downwash::judge {
 namespace {
@@ -21,20 +22,6 @@ constexpr double overshoot_m = 0.5;
 constexpr double free_s = 0.1;
 constexpr double pull_m = 2;
 constexpr double force_loop_share = 0.4;
-
-/// What a law answers to a metre along an axis, x or z [1/s2].
-double answer_1_s2(const ControlLaw& law, bool is_height) {
-    if (const auto* inversion = std::get_if<ModelInversion>(&law)) {
-        return is_height ? inversion->height_kp.value_or(inversion->position_kp) : inversion->position_kp;
-    }
-    if (const auto* lyapunov = std::get_if<PlanarLyapunov>(&law)) {
-        return 1 + (is_height ? lyapunov->vertical_k * lyapunov->vertical_k_rate
-                              : lyapunov->horizontal_k * lyapunov->horizontal_k_rate);
-    }
-    const auto& cascade = std::get<CascadedPid>(law);
-    return is_height ? cascade.vertical_position_kp * cascade.vertical_velocity_kp
-                     : cascade.horizontal_position_kp * cascade.horizontal_velocity_kp;
-}
 
 double dot(PlaneVector a, Planar b) {
     return a.x * b.x + a.z * b.z;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "downwash/judge/goals.hpp"
+#include "downwash/judge/position_loop.hpp"
 
 namespace downwash::judge {
 namespace {
@@ -60,6 +61,7 @@ Umpire::Umpire(const Problem& problem, const SurfaceEffects* effects, const Obst
       effects_(effects),
       obstacles_(obstacles),
       world_(world),
+      lateral_m_(lateral_m(world, problem.robot)),
       tick_s_(1 / problem.robot.controller.rate_hz),
       flight_(flight) {
     for (const BodyShape& body : problem.robot.body) {
@@ -79,8 +81,7 @@ bool Umpire::sees(const Loop& loop, const ReferencePoint& reference) {
     if (!is_stable(motion, reference)) {
         flight_.outcome = Outcome::unstable;
     } else if (is_contact || touches_within_tick(loop, motion, clearance_m)) {
-        flight_.outcome = Outcome::collision;
-        flight_.min_clearance_m = 0;
+        sees_collision(among_obstacles(motion));
     } else if (!is_flyable(motion)) {
         flight_.outcome = Outcome::left_flyable_area;
     }
@@ -107,8 +108,7 @@ bool Umpire::sees_touch(const Loop& loop, const ReferencePoint& reference, const
     if (!is_stable(motion, reference)) {
         flight_.outcome = Outcome::unstable;
     } else if (depth_m > max_depth_m || obstacles_.clearance_m(beside) <= 0) {
-        flight_.outcome = Outcome::collision;
-        flight_.min_clearance_m = 0;
+        sees_collision(beside);
     } else if (!is_flyable(motion)) {
         flight_.outcome = Outcome::left_flyable_area;
     }
@@ -149,7 +149,15 @@ PlanarPose Umpire::among_obstacles(const Motion& motion) const {
     PlanarPose pose = pose_of(motion);
     pose.x_m -= world_.scene_x_m;
     pose.z_m -= world_.scene_z_m;
+    pose.lateral_m = lateral_m_;
     return pose;
+}
+
+void Umpire::sees_collision(PlanarPose pose) {
+    flight_.outcome = Outcome::collision;
+    flight_.min_clearance_m = 0;
+    pose.lateral_m = 0;
+    flight_.is_lateral_collision = lateral_m_ != 0 && obstacles_.clearance_m(pose) > 0;
 }
 
 void Umpire::add_row(const Motion& motion, const ReferencePoint& reference, double clearance_m, double energy_j) {

@@ -43,6 +43,9 @@ class Umpire {
 
     [[nodiscard]] PlanarPose among_obstacles(const Motion& motion) const;
 
+    /// The flight ends with a contact at a pose among the obstacles, or with one that this is near to.
+    void sees_collision(PlanarPose pose);
+
     void add_row(const Motion& motion, const ReferencePoint& reference, double clearance_m, double energy_j);
 
     [[nodiscard]] bool touches_within_tick(const Loop& loop, const Motion& motion, double clearance_m) const;
@@ -63,6 +66,7 @@ class Umpire {
     const Obstacles& obstacles_;
     double body_reach_m_ = 0;
     const World& world_;
+    double lateral_m_;
     double tick_s_;
     JudgedFlight& flight_;
     Motion last_;

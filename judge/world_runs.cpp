@@ -46,6 +46,7 @@ WorldRuns statistics_of(std::vector<WorldRun> runs, const std::vector<World>& wo
         has_failed.push_back(run.outcome != Outcome::ok);
         result.failures += has_failed.back() ? 1 : 0;
         result.collisions += run.outcome == Outcome::collision ? 1 : 0;
+        result.lateral_collisions += run.is_lateral_collision ? 1 : 0;
     }
     result.collision_probability = probability_of(result.collisions, runs.size());
     result.failure_probability = probability_of(result.failures, runs.size());
@@ -90,7 +91,12 @@ std::optional<WorldRuns> fly_in_worlds(const PlanJudge& judge, const Plan& plan,
                 return;
             }
             const JudgedFlight flight = judge.fly(plan, {true, worlds[i]});
-            runs[i] = {i + 1, flight.outcome, flight.min_clearance_m, flight.max_tracking_error_m, flight.energy_j};
+            runs[i] = {i + 1,
+                       flight.outcome,
+                       flight.min_clearance_m,
+                       flight.max_tracking_error_m,
+                       flight.energy_j,
+                       flight.is_lateral_collision};
             if (!traces.empty()) {
                 traces[i] = clearance_trace(flight, options.fan_step_s);
             }

@@ -30,6 +30,7 @@ struct WorldRun {
     std::uint64_t world = 0;
     Outcome outcome = Outcome::ok;
     double min_clearance_m = 0, max_tracking_error_m = 0, energy_j = 0;
+    bool is_lateral_collision = false;  ///< see JudgedFlight
 };
 
 /// How much a parameter of the worlds matters.
@@ -44,7 +45,8 @@ struct Sensitivity {
 struct WorldRuns {
     std::vector<WorldRun> runs;  ///< worlds 1, 2, ...
     std::size_t collisions = 0;
-    std::size_t failures = 0;  ///< flights with any outcome but ok
+    std::size_t lateral_collisions = 0;  ///< of them
+    std::size_t failures = 0;            ///< flights with any outcome but ok
     Probability collision_probability, failure_probability;
     double clearance_p01_m = 0, clearance_p10_m = 0, clearance_p50_m = 0;
     /// p50, p90, p99

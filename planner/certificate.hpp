@@ -22,6 +22,7 @@ struct WorldSample {
     double min_clearance_m = 0;  ///< up to where the flight ended; infinity without obstacles
     std::size_t goal =
         0;  ///< number from 0 of the goal that a failed flight was on the way to, or missed. Not in files
+    bool is_lateral_collision = false;  ///< in its plane the vehicle would have touched nothing. Not in files
 };
 
 /// What flights of a plan in worlds that no search has seen say about it.
@@ -35,7 +36,7 @@ struct Certificate {
     double max_failure_probability = 0;
     double confidence = 0;
     std::uint64_t attempts = 0;                   ///< plans of the search that asked for one; they share the error
-    std::map<std::string, std::uint64_t> causes;  ///< failures by the name of their outcome
+    std::map<std::string, std::uint64_t> causes;  ///< failures by outcome; some collisions as lateral_collision
     struct {
         double p01, p10, p50;
     } clearance_m{0, 0, 0};          ///< quantiles of the least clearance of each flight

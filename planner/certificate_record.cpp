@@ -65,6 +65,7 @@ bool CertificateRecord::replace(const std::vector<WorldSample>& samples) {
 
 Certificate CertificateRecord::certificate(bool is_given) const {
     constexpr std::size_t most_listed = 10;
+    const std::string lateral_collision = "lateral_collision";
     Certificate certificate;
     certificate.is_given = is_given && passes();
     certificate.worlds = worlds();
@@ -77,7 +78,8 @@ Certificate CertificateRecord::certificate(bool is_given) const {
     for (const WorldSample& sample : samples_) {
         clearances_m.push_back(sample.min_clearance_m);
         if (is_failure(sample)) {
-            ++certificate.causes[std::string(name_of(sample.outcome))];
+            ++certificate
+                  .causes[sample.is_lateral_collision ? lateral_collision : std::string(name_of(sample.outcome))];
         }
     }
     if (!samples_.empty()) {

@@ -25,6 +25,17 @@ std::size_t failed_goal(const FlightJob& job, const std::vector<std::size_t>& ho
     return static_cast<std::size_t>(std::lower_bound(hovers.begin(), hovers.end(), knot) - hovers.begin());
 }
 
+/// Whether a flight ends in a collision where its vehicle, at the same pose in its plane, touches nothing.
+bool is_lateral_collision(const FlightModel& model, const FlightJob& job) {
+    const FlightLeg* const rejected = job.rejected_leg();
+    if (rejected == nullptr || rejected->flight.rejection != Rejection::collision || job.world->lateral_m == 0) {
+        return false;
+    }
+    PlanarPose pose = among_obstacles(pose_of(rejected->end), job.world);
+    pose.lateral_m = 0;
+    return !model.collisions().is_nearer_than(pose, 0);
+}
+
 /// Sets what long work asks, for a scope.
 class AskingScope {
  public:
@@ -190,7 +201,8 @@ std::vector<WorldFlight> WorldFlights::fly_from(std::span<const std::optional<Fl
         flights[world_of[i]] = {
             rejection == Rejection::none && misses_a_goal ? Rejection::goal_missed : rejection,
             min_clearance_m(jobs[i]),
-            misses_a_goal && rejection == Rejection::none ? hovers.size() : failed_goal(jobs[i], hovers)};
+            misses_a_goal && rejection == Rejection::none ? hovers.size() : failed_goal(jobs[i], hovers),
+            is_lateral_collision(*model_, jobs[i])};
     }
     if (visits == goals_.size() && !misses_a_goal) {
         touch(jobs, held, world_of, flights, is_over);

@@ -20,6 +20,7 @@ struct WorldFlight {
     Rejection rejection = Rejection::none;  ///< `unstable` also for a vehicle that does not stay at its start
     double min_clearance_m = 0;             ///< up to where the flight ended, as well as it is found
     std::size_t goal = 0;                   ///< number of the goal that a failed flight was on the way to, or missed
+    bool is_lateral_collision = false;      ///< in its plane, at the same pose, the vehicle would have touched nothing
 };
 
 /// Flies whole plans of a problem in its worlds, from the start through all goals, through the aero map and side by

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
@@ -15,6 +16,25 @@
 
 namespace downwash::planning {
 namespace {
+
+/// Spreads points evenly: Kronecker's sequence with the generalised golden ratio (Roberts 2018).
+/// @param point one of the sequence, filled   @param number which one
+void spread_evenly(std::span<double> point, std::uint64_t number) {
+    double phi = 2;
+    for (int i = 0; i < 30; ++i) {
+        double power = 1;
+        for (std::size_t k = 0; k < point.size(); ++k) {
+            power *= phi;
+        }
+        phi = phi - (power * phi - phi - 1) / (static_cast<double>(point.size() + 1) * power - 1);
+    }
+    double step = 1;
+    for (double& coordinate : point) {
+        step /= phi;
+        const double place = 0.5 + static_cast<double>(number) * step;
+        coordinate = place - std::floor(place);
+    }
+}
 
 /// Worlds in which dangers come early (DangerQuantiles); then points spread evenly.
 /// @param number of the world, from 1   @return quantiles of world_parameters_of(robot)
@@ -28,21 +48,12 @@ std::vector<double> search_quantiles(const Robot& robot, std::uint64_t number) {
                                [&](const WorldParameter* parameter) { return parameter->danger.*dangers[number - 1]; });
         return quantiles;
     }
-    // Kronecker's sequence with the generalised golden ratio (Roberts 2018).
-    double phi = 2;
-    for (int i = 0; i < 30; ++i) {
-        double power = 1;
-        for (std::size_t k = 0; k < parameters.size(); ++k) {
-            power *= phi;
-        }
-        phi = phi - (power * phi - phi - 1) / (static_cast<double>(parameters.size() + 1) * power - 1);
-    }
-    double step = 1;
-    for (double& quantile : quantiles) {
-        step /= phi;
-        const double place = 0.5 + static_cast<double>(number) * step;
-        quantile = place - std::floor(place);
-    }
+    // A sequence for what moves in the plane, and one for what displaces beside it: neither depends on the other.
+    const auto first_lateral = std::ranges::find_if(parameters, &WorldParameter::is_lateral);
+    const std::span<double> all = quantiles;
+    const auto in_plane = static_cast<std::size_t>(first_lateral - parameters.begin());
+    spread_evenly(all.first(in_plane), number);
+    spread_evenly(all.subspan(in_plane), number);
     return quantiles;
 }
 
@@ -249,7 +260,8 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
         }
         for (std::uint64_t i = 0; i < next; ++i) {
             const WorldFlight& flight = flown.front();
-            record.add({first + i, outcome_of(flight.rejection), flight.min_clearance_m, flight.goal});
+            record.add({first + i, outcome_of(flight.rejection), flight.min_clearance_m, flight.goal,
+                        flight.is_lateral_collision});
             flown.pop_front();
         }
     }

@@ -191,6 +191,7 @@ Json execution_json(const Solution& solution) {
     }
     if (solution.execution_world) {
         execution["world"] = {{"index", solution.execution_world->index}, {"seed", solution.execution_world->seed}};
+        execution["lateral_m"] = number(flight.lateral_m);
     }
     return execution;
 }

@@ -21,18 +21,18 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool is_finite(const PlanarPose& pose) {
-    return std::isfinite(pose.x_m + pose.z_m + pose.pitch_rad + pose.arm_rad);
+    return std::isfinite(pose.x_m + pose.z_m + pose.pitch_rad + pose.arm_rad + pose.lateral_m);
 }
 
 /// A frame of the robot in the frame of the plane of motion (x along the heading, y to the left, z up): turned by an
-/// angle about the lateral axis, then moved within the plane.
+/// angle about the lateral axis, then moved.
 struct Frame {
-    double x_m, z_m, cosine, sine;
+    double x_m, lateral_m, z_m, cosine, sine;
 
     Vector3 turned(const Vector3& v) const { return {cosine * v[0] + sine * v[2], v[1], cosine * v[2] - sine * v[0]}; }
     Vector3 placed(const Vector3& p_m) const {
         const Vector3 p = turned(p_m);
-        return {x_m + p[0], p[1], z_m + p[2]};
+        return {x_m + p[0], lateral_m + p[1], z_m + p[2]};
     }
     /// In the world.
     Convex placed(const Convex& own, const PlaneOfMotion& plane) const {
@@ -52,9 +52,9 @@ struct Frame {
     }
 };
 
-Frame frame_at(double x_m, double z_m, double angle_rad) {
+Frame frame_at(const Vector3& origin_m, double angle_rad) {
     const auto [sine, cosine] = lane::sin_cos(angle_rad);
-    return {x_m, z_m, cosine, sine};
+    return {origin_m[0], origin_m[1], origin_m[2], cosine, sine};
 }
 
 /// A piece of the robot in its own frame: that of the multirotor, or that of the arm (from the joint, x along the arm).
@@ -121,9 +121,8 @@ struct CollisionChecker::Impl {
     /// Calls `visit(piece placed in the world)` until it returns true; whether it did.
     template <class Visit>
     bool any_piece(const PlanarPose& pose, const Visit& visit) const {
-        const Frame body = frame_at(pose.x_m, pose.z_m, pose.pitch_rad);
-        const Vector3 joint = body.placed(joint_m);
-        const Frame arm = frame_at(joint[0], joint[2], pose.pitch_rad + pose.arm_rad);
+        const Frame body = frame_at({pose.x_m, pose.lateral_m, pose.z_m}, pose.pitch_rad);
+        const Frame arm = frame_at(body.placed(joint_m), pose.pitch_rad + pose.arm_rad);
         return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
             return visit((piece.is_arm ? arm : body).placed(piece.convex, plane));
         });
@@ -131,7 +130,7 @@ struct CollisionChecker::Impl {
 
     /// Whether the box that holds the robot at any attitude keeps `margin_m` from every obstacle.
     bool is_far_away(const PlanarPose& pose, double margin_m) const {
-        const Vector3 center = plane.to_world(pose.x_m, 0, pose.z_m);
+        const Vector3 center = plane.to_world(pose.x_m, pose.lateral_m, pose.z_m);
         const Vector3 reach{reach_m, reach_m, reach_m};
         const BoundingBox everywhere{center - reach, center + reach};
         const auto gap = [&](const BoundingBox& box) { return gap_m(everywhere, box); };

@@ -343,7 +343,7 @@ struct FclDistances::Solids {
     /// Calls `visit(piece placed in the world)` until it returns true; whether it did.
     template <class Visit>
     bool any_piece(const PlanarPose& pose, const Visit& visit) const {
-        const Pose body = frame_at(vector_of(plane.to_world(pose.x_m, 0, pose.z_m)), pose.pitch_rad);
+        const Pose body = frame_at(vector_of(plane.to_world(pose.x_m, pose.lateral_m, pose.z_m)), pose.pitch_rad);
         const Pose arm = frame_at(body * joint_m, pose.pitch_rad + pose.arm_rad);
         return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
             const Pose at = (piece.is_arm ? arm : body) * piece.pose;
@@ -371,7 +371,7 @@ struct FclDistances::Solids {
 
     /// Whether the box that holds the robot at any attitude keeps `margin_m` from every obstacle.
     bool is_far_away(const PlanarPose& pose, double margin_m) const {
-        const Vector3 center_m = plane.to_world(pose.x_m, 0, pose.z_m);
+        const Vector3 center_m = plane.to_world(pose.x_m, pose.lateral_m, pose.z_m);
         const fcl::AABBd center(vector_of(center_m));
         return !any_part_near(center, reach_m + margin_m, [](const Part&) { return true; }) &&
                !is_inside_mesh(center_m);

@@ -11,7 +11,7 @@ namespace {
 PlanarPose between(const PlanarPose& from, const PlanarPose& to, double share) {
     return {from.x_m + share * (to.x_m - from.x_m), from.z_m + share * (to.z_m - from.z_m),
             from.pitch_rad + share * (to.pitch_rad - from.pitch_rad),
-            from.arm_rad + share * (to.arm_rad - from.arm_rad)};
+            from.arm_rad + share * (to.arm_rad - from.arm_rad), to.lateral_m};
 }
 
 using Clearance = double (*)(const FlightModel&, const PlanarPose&);

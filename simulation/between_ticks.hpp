@@ -11,6 +11,7 @@ namespace downwash::simulation {
 [[nodiscard]] MotionReach motion_reach(const FlightModel& model) noexcept;
 
 /// A bound on how far any point of the robot's surface moves between two poses whose coordinates change evenly [m].
+/// Both, here and below, are equally far beside the plane.
 [[nodiscard]] double motion_m(const FlightModel& model, const PlanarPose& from, const PlanarPose& to) noexcept;
 
 /// Whether the robot is nearer than a margin to an obstacle at some pose between two poses at which it is not. Checks

@@ -248,6 +248,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     const FlownWorld* const world = flown_world(model, in.world);
     Execution execution;
     execution.aero = aero;
+    execution.lateral_m = world != nullptr ? world->lateral_m : 0;
     execution.rotor_count = model.tick().plant.rotor_count;
     execution.has_rotor_lag = model.tick().plant.rotor_time_constant_s > 0;
     execution.min_clearance_m = std::numeric_limits<double>::infinity();

@@ -83,6 +83,7 @@ struct Execution : FlightSums {
     double max_tracking_error_m = 0;
     double max_saturation = 0;         ///< greatest demand over its limit; above 1 something was clipped
     double goal_error_m = 0;           ///< the worst of all goals
+    double lateral_m = 0;              ///< how far the vehicle was to the left of its plane; see FlownWorld
     std::vector<GoalVisit> goals;      ///< one for each, in their order
     std::optional<TouchRecord> touch;  ///< touch of the last goal, where it asks for one and the flight came to it
     int rotor_count = 0;

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "downwash/scene/planar_pose.hpp"
 #include "downwash/simulation/map_effect.hpp"
 #include "downwash/simulation/motion_reach.hpp"
 #include "downwash/simulation/rule_checks.hpp"
@@ -36,7 +35,7 @@ struct alignas(64) FlightLanes {
     double tick[lane_count], ticks[lane_count];
 
     // While the robot is this near to a pose, the kernel checks nothing but the rules of flight_rules.hpp.
-    LaneRows<PlanarPose> anchor;
+    double anchor[4][lane_count];      ///< x, z, pitch and arm
     double free_motion_m[lane_count];  ///< negative: check after every tick
     double look_tick[lane_count];      ///< check from this tick of the segment on; infinite: never
     double max_speed_m_s[lane_count];  ///< speed in (x, z) from which on to check; infinite: never
@@ -47,7 +46,7 @@ struct alignas(64) FlightLanes {
     MapPatches<lane_count> patches[max_rotors + 2];  ///< patches of the map in which the rotors are
 
     // What a call found at its last tick.
-    LaneRows<PlanarPose> before;   ///< pose at the tick before
+    double before[4][lane_count];  ///< x, z, pitch and arm at the tick before
     double rejection[lane_count];  ///< number of a Rejection
     /// 1 if a check is due because of the flyable area, free_motion_m, look_tick or max_speed_m_s.
     double is_unclear[lane_count];

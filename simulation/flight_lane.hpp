@@ -149,9 +149,10 @@ class FlightLane {
     }
 
     /// That of state(), of which it is the first four numbers.
-    [[nodiscard]] PlanarPose pose() const noexcept {
-        return {lanes_->state[0][number_], lanes_->state[1][number_], lanes_->state[2][number_],
-                lanes_->state[3][number_]};
+    [[nodiscard]] PlanarPose pose() const noexcept { return pose_in(lanes_->state); }
+    /// @param rows x, z, pitch and arm come first
+    [[nodiscard]] PlanarPose pose_in(const double (*rows)[lane_count]) const noexcept {
+        return {rows[0][number_], rows[1][number_], rows[2][number_], rows[3][number_]};
     }
 
     [[nodiscard]] const PlantModel& plant() const noexcept { return setting_->model.tick().plant; }
@@ -221,7 +222,7 @@ class FlightLane {
             return Rejection::flyable_area;
         }
         // Within the free motion nothing is near between ticks either: both ends are, and the bound is convex.
-        if (comes_nearer_between(setting_->model, among_obstacles(read<PlanarPose>(lanes_->before), world_), pose,
+        if (comes_nearer_between(setting_->model, among_obstacles(pose_in(lanes_->before), world_), pose,
                                  setting_->rules.margin_m)) {
             return Rejection::collision;
         }
@@ -252,7 +253,9 @@ class FlightLane {
         if (motion_m <= 2 * clearance_error_m) {
             return false;
         }
-        write(this->pose(), lanes_->anchor);
+        for (int i = 0; i < 4; ++i) {
+            lanes_->anchor[i][number_] = lanes_->state[i][number_];
+        }
         lanes_->free_motion_m[number_] = motion_m - clearance_error_m;
         return true;
     }

@@ -136,6 +136,7 @@ struct FlightWorld {
     if (world != nullptr) {
         pose.x_m -= world->world.scene_x_m;
         pose.z_m -= world->world.scene_z_m;
+        pose.lateral_m += world->lateral_m;
     }
     return pose;
 }

@@ -12,6 +12,7 @@ struct Uncertainty {
     Spread ceiling_scale = Spread::of_sd(0.15);
     Spread ground_scale = Spread::over(-0.8, 0.8);
     Spread scene_x_m = Spread::of_sd(0.02);
+    Spread scene_y_m = Spread::of_sd(0.02);
     Spread scene_z_m = Spread::of_sd(0.02);
 
     Spread mass_scale = Spread::of_sd(0.02);
@@ -24,14 +25,16 @@ struct Uncertainty {
     Spread arm_wash_scale = Spread::of_sd(0.15);                 ///< Of a robot whose arm is in the wash.
     Spread rotor_time_constant_s = Spread::of_factor(0.7, 1.5);  ///< A range is one of the time constant itself.
     Spread delay_s = Spread::of_factor(0.5, 1.5);                ///< A range is one of the delay itself.
+    Spread lateral_error_m = Spread::of_sd(0.01);                ///< Beside the gusts.
 
-    Spread position_bias_m = Spread::of_sd(0.01);  ///< x and z draw a number each.
+    Spread position_bias_m = Spread::of_sd(0.01);  ///< x, y and z draw a number each.
     Spread pitch_bias_rad = Spread::of_sd(0.005235987755982988);
     Spread position_noise_m = Spread::of_sd(0.005);  ///< Only the sd of a noise has a meaning.
     Spread velocity_noise_m_s = Spread::of_sd(0.02);
     Spread gyro_noise_rad_s = Spread::of_sd(0.015);
 
     Spread wind_x_m_s = Spread::of_sd(0.5);
+    Spread wind_y_m_s = Spread::of_sd(0.5);
     Spread wind_z_m_s = Spread::of_sd(0.1);
     Spread gust_m_s = Spread::of_sd(0.3);
     double gust_length_x_m = 23;  ///< Length scales of the Dryden model 3 m above the ground.

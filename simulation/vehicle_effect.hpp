@@ -18,7 +18,8 @@ struct VehicleEffect {
 /// where the vehicle is not flyable.
 [[nodiscard]] DOWNWASH_EXPORT VehicleEffect vehicle_effect(const FlightModel& model, const PlanarPose& pose);
 
-/// Whether every rotor of a vehicle at this pose is inside the flyable area (docs/model.md 4.4), decided exactly.
+/// Whether every rotor of a vehicle at this pose is inside the flyable area (docs/model.md 4.4), decided exactly. Like
+/// the effect itself, the area is that of the plane: how far the vehicle is beside it does not count.
 [[nodiscard]] DOWNWASH_EXPORT bool is_flyable(const FlightModel& model, const PlanarPose& pose);
 /// Whether a map has every rotor of a vehicle at this pose inside its flyable area.
 [[nodiscard]] DOWNWASH_EXPORT bool is_flyable(const FlightModel& model, const AeroMap& map, const PlanarPose& pose);

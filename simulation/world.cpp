@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "downwash/base/portable_math.hpp"
 #include "downwash/simulation/noise.hpp"
@@ -24,6 +25,35 @@ Robot real_robot(const Robot& nominal, const World& world) {
     }
     robot.rotors.time_constant_s += world.rotor_time_constant_s;
     return robot;
+}
+
+/// Whether something of the law along x carries a steady force: an integral or an observer. Laws that are not named
+/// here count as without an integral.
+bool carries_steady_force(const ControlLaw& law) {
+    if (controllers::aids_of(law).observer) {
+        return true;
+    }
+    if (const auto* inversion = std::get_if<ModelInversion>(&law)) {
+        return inversion->position_ki > 0;
+    }
+    const auto* cascade = std::get_if<CascadedPid>(&law);
+    return cascade != nullptr && cascade->horizontal_velocity_ki > 0;
+}
+
+/// How far air from the right pushes the vehicle to the left. The loop across the plane is taken to be as stiff as that
+/// along x, and to carry a steady wind as that does; gusts it only resists.
+double pushed_aside_m(const Robot& robot, const World& world) {
+    const double wind_m_s = world.gust_y_m_s + (carries_steady_force(robot.controller.law) ? 0 : world.wind_y_m_s);
+    if (wind_m_s == 0) {
+        return 0;
+    }
+    double force_n = 0;
+    for (const DragParameters& drag : {robot.multirotor.drag, robot.arm.drag}) {  // the arm is across the stream
+        force_n += (drag.linear_n_s_m + drag.quadratic_n_s2_m2 * std::abs(wind_m_s)) * wind_m_s;
+    }
+    const double stiffness_1_s2 = std::visit([](const auto& law) { return law.position_stiffness_1_s2(0); },
+                                             controllers::flown_law(robot.controller.law));
+    return force_n / (robot.mass_kg() * stiffness_1_s2);
 }
 
 /// The filters of the Dryden model (MIL-F-8785C 3.7.2) sampled at the control ticks without loss, for unit variance.
@@ -84,6 +114,7 @@ FlownWorld make_world(const Robot& robot, const World& world) {
     set_gusts(world, tick_s, numbers);
     flown.has_noise =
         world.position_noise_m > 0 || world.velocity_noise_m_s > 0 || world.gyro_noise_rad_s > 0 || world.gust_m_s > 0;
+    flown.lateral_m = pushed_aside_m(robot, world) + world.lateral_error_m - world.position_bias_y_m - world.scene_y_m;
     return flown;
 }
 

@@ -14,7 +14,8 @@ namespace downwash {
 struct World {
     double ceiling_scale = 0;  ///< Relative change of K - 1 under surfaces.
     double ground_scale = 0;   ///< Relative change of K - 1 over surfaces.
-    double scene_x_m = 0;      ///< Displacement of all surfaces and obstacles.
+    double scene_x_m = 0;      ///< Displacement of all surfaces and obstacles; y is to the left, of obstacles alone.
+    double scene_y_m = 0;
     double scene_z_m = 0;
     double mass_scale = 0;          ///< Relative change of the multirotor's mass.
     double inertia_scale = 0;       ///< Relative change of both inertias.
@@ -27,10 +28,14 @@ struct World {
     double rotor_time_constant_s = 0;            ///< Added to that of the robot.
     double delay_s = 0;                          ///< Added to that of the robot.
     double position_bias_x_m = 0;                ///< Constant error of the position that the controller sees.
+    double position_bias_y_m = 0;
     double position_bias_z_m = 0;
     double pitch_bias_rad = 0;  ///< Constant error of the pitch that the controller sees.
     double wind_x_m_s = 0;      ///< Steady wind.
+    double wind_y_m_s = 0;
     double wind_z_m_s = 0;
+    double gust_y_m_s = 0;       ///< A gust from the right as long as the flight.
+    double lateral_error_m = 0;  ///< How far the loop across the plane lets the vehicle be to the left of it.
 
     // Alike in every world of a problem but the nominal one.
     double position_noise_m = 0;  ///< Standard deviations of what the controller sees, anew in every tick.
@@ -43,11 +48,12 @@ struct World {
     std::uint64_t tape = 0;  ///< Selects the noise and the gusts.
 };
 
-/// A world as the tick needs it.
+/// A world as a flight needs it.
 struct FlownWorld {
     World world;
     simulation::WorldNumbers<double> numbers;
-    bool has_noise;  ///< Noise in what the controller sees, or gusts.
+    bool has_noise;        ///< Noise in what the controller sees, or gusts.
+    double lateral_m = 0;  ///< How far the vehicle is to the left of where its obstacles have the plane.
 };
 
 /// Prepares a world for the tick.

@@ -72,9 +72,11 @@ Tables made_tables() {
                  &U::ceiling_scale, {{"", &W::ceiling_scale, {far, 1 - far, 0.85, 0.85}}});
     t.difference("aero.ground_scale", "relative change of K - 1 above surfaces", 0.9, &U::ground_scale,
                  {{"", &W::ground_scale, {far, 1 - far}}});
-    t.group("aero.scene_offset_m", "where the surfaces are, from where they nominally are");
+    t.group("aero.scene_offset_m", "where surfaces and obstacles are, from where they nominally are");
     t.difference("aero.scene_offset_m.x", "along the plane [m]", 10, &U::scene_x_m,
                  {{"", &W::scene_x_m, {.forward = far, .backward = 1 - far}}});
+    t.difference("aero.scene_offset_m.y", "to the left of the plane [m]; of obstacles, surfaces stay", 10,
+                 &U::scene_y_m, {});
     t.difference("aero.scene_offset_m.z", "upwards [m]", 10, &U::scene_z_m,
                  {{"", &W::scene_z_m, {1 - far, far, 0.2, 0.2}}});
 
@@ -99,11 +101,14 @@ Tables made_tables() {
     t.of_robot("vehicle.delay_s", "age of what the controller sees; sd around the robot's, range in s", 0.3,
                &U::delay_s, [](const Robot& robot) { return robot.controller.delay_s; },
                {"", &W::delay_s, {.strong = far}});
+    t.difference("vehicle.lateral_error_m",
+                 "how far the loop across the plane lets the vehicle be to the left of it, beside gusts", 10,
+                 &U::lateral_error_m, {});
     const auto is_washed = [](const Robot& robot) { return robot.arm.wash.has_value(); };
     t.of_some("vehicle.arm_wash_scale", "relative change of the speed of the slipstreams at the arm", 0.9,
               &U::arm_wash_scale, "where the robot has arm.wash", is_washed);
     t.group("sensing", "what the controller sees instead of the state");
-    t.difference("sensing.position_bias_m", "constant error, along x and along z", 10, &U::position_bias_m,
+    t.difference("sensing.position_bias_m", "constant error along x, y and z", 10, &U::position_bias_m,
                  {{" x", &W::position_bias_x_m, {.forward = far, .backward = 1 - far}},
                   {" z", &W::position_bias_z_m, {0.1, 0.9}}});
     t.difference("sensing.pitch_bias_deg", "constant error", 30, &U::pitch_bias_rad,
@@ -119,12 +124,29 @@ Tables made_tables() {
     t.group("wind.steady_m_s", "wind that does not change");
     t.difference("wind.steady_m_s.x", "along the plane [m/s]", 30, &U::wind_x_m_s,
                  {{"", &W::wind_x_m_s, {.forward = far, .backward = 1 - far}}});
+    t.difference("wind.steady_m_s.y",
+                 "to the left [m/s]; it displaces where no integral and no observer of the controller carries it", 30,
+                 &U::wind_y_m_s, {});
     t.difference("wind.steady_m_s.z", "upwards [m/s]", 30, &U::wind_z_m_s, {{"", &W::wind_z_m_s, {0.9, 0.1}}});
-    t.noise("wind.gust_m_s", "Dryden gusts along x and z", 30, &U::gust_m_s, &W::gust_m_s);
+    t.noise("wind.gust_m_s", "Dryden gusts along x and z; along y one that lasts", 30, &U::gust_m_s, &W::gust_m_s);
 
-    // Drawn last: worlds are otherwise those of the same robot without a wash.
+    // Drawn after all above: worlds are otherwise those of the same robot without a wash.
     t.parameters.push_back(
         {"vehicle.arm_wash_scale", &U::arm_wash_scale, nullptr, &W::arm_wash_scale, 0, {}, is_washed});
+
+    // Drawn last: what displaces the vehicle beside the plane, and changes nothing in it. Together these quantiles come
+    // to some two standard deviations of the displacement.
+    constexpr double somewhat = 0.9;
+    constexpr DangerQuantiles moves_left{.forward = somewhat, .backward = 1 - somewhat};
+    constexpr DangerQuantiles moves_right{.forward = 1 - somewhat, .backward = somewhat};
+    const auto lateral = [&](const char* name, Spread U::*spread, double W::*value, const DangerQuantiles& danger) {
+        t.parameters.push_back({name, spread, nullptr, value, 0, danger, nullptr, true});
+    };
+    lateral("aero.scene_offset_m.y", &U::scene_y_m, &W::scene_y_m, moves_right);
+    lateral("sensing.position_bias_m y", &U::position_bias_m, &W::position_bias_y_m, moves_right);
+    lateral("vehicle.lateral_error_m", &U::lateral_error_m, &W::lateral_error_m, moves_left);
+    lateral("wind.steady_m_s.y", &U::wind_y_m_s, &W::wind_y_m_s, moves_left);
+    lateral("wind.gust_m_s y", &U::gust_m_s, &W::gust_y_m_s, moves_left);
     return t;
 }
 
@@ -187,11 +209,13 @@ World draw_world(const Uncertainty& uncertainty, const Robot& robot, std::uint64
         return {};
     }
     const std::uint64_t tape = simulation::mixed(simulation::mixed(seed) ^ index);
-    std::vector<double> quantiles(world_parameters_of(robot).size());
+    std::vector<double> quantiles;
     std::uint64_t bits = tape;
-    for (double& quantile : quantiles) {
+    for (const WorldParameter& parameter : world_parameters()) {
         bits = simulation::mixed(bits);
-        quantile = (static_cast<double>(bits >> 11U) + 0.5) * 0x1p-53;
+        if (parameter.matters_to(robot)) {
+            quantiles.push_back((static_cast<double>(bits >> 11U) + 0.5) * 0x1p-53);
+        }
     }
     return world_at(uncertainty, robot, quantiles, tape);
 }

@@ -22,8 +22,8 @@ namespace downwash {
 struct DangerQuantiles {
     double strong = 0.5;    ///< Strong suction under a low scene, with slow rotors.
     double weak = 0.5;      ///< The reverse.
-    double forward = 0.5;   ///< Wind and bias forwards, under a scene that is somewhat low.
-    double backward = 0.5;  ///< Wind and bias backwards, under the same scene.
+    double forward = 0.5;   ///< Wind and bias forwards, under a scene that is somewhat low, to the left of the plane.
+    double backward = 0.5;  ///< Wind and bias backwards, under the same scene, to the right.
 };
 
 /// A number that worlds draw, each for itself.
@@ -36,6 +36,7 @@ struct WorldParameter {
     int rotor = 0;
     DangerQuantiles danger = {};
     bool (*is_in_effect)(const Robot&) = nullptr;  ///< nullptr: it matters to every robot
+    bool is_lateral = false;                       ///< It displaces the vehicle beside the plane, and nothing else.
 
     [[nodiscard]] bool matters_to(const Robot& robot) const noexcept {
         return is_in_effect == nullptr || is_in_effect(robot);
@@ -67,11 +68,11 @@ struct UncertaintyKey {
 /// Every key but `wind.gust_length_m`, which is no spread, in the order of files; groups come before their keys.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const UncertaintyKey> uncertainty_keys();
 
-/// Every number that worlds draw, in the order of the draws; those of rotors that a robot does not have change nothing.
+/// Every number that worlds draw, in the order of the draws, the lateral ones last; those of rotors that a robot does
+/// not have change nothing.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const WorldParameter> world_parameters();
 
-/// Those that matter to a robot, in the same order: only they are drawn, so that what other robots may have changes no
-/// world of this one.
+/// Those that matter to a robot, in the same order.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<const WorldParameter*> world_parameters_of(const Robot& robot);
 
 /// The world in which each parameter is at a quantile of its spread.

@@ -99,6 +99,11 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
     text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
     text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
     text += table_row("goal error", millimetres(flight.goal_error_m));
+    if (flight.lateral_m != 0) {
+        text += table_row("beside plane", fmt::format("{} to the {}, as the obstacles of this world see it",
+                                                      millimetres(std::abs(flight.lateral_m)),
+                                                      flight.lateral_m > 0 ? "left" : "right"));
+    }
     if (flight.touch) {
         const TouchRecord& touch = *flight.touch;
         text += table_row(

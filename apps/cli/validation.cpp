@@ -35,6 +35,7 @@ Json quantiles(const std::array<double, 3>& values) {
 void add_runs(Json& document, const judge::WorldRuns& worlds) {
     document["runs"] = worlds.runs.size();
     document["collisions"] = worlds.collisions;
+    document["lateral_collisions"] = worlds.lateral_collisions;
     document["collision_probability"] = json_of(worlds.collision_probability);
     document["failures"] = worlds.failures;
     document["failure_probability"] = json_of(worlds.failure_probability);
@@ -69,7 +70,8 @@ std::string verdict_of(const Validation& validation) {
             text = "The flight reaches the goal and hovers there";
             break;
         case judge::Outcome::collision:
-            text = "The flight ends in a collision";
+            text = validation.flight.is_lateral_collision ? "The flight ends in a collision beside its plane"
+                                                          : "The flight ends in a collision";
             break;
         case judge::Outcome::unstable:
             text = "The flight becomes unstable";
@@ -103,6 +105,10 @@ std::string text_of(const judge::WorldRuns& worlds, const std::string& fly_one) 
     std::string text;
     text += table_row("failures", interval("worlds", worlds.failures, runs, worlds.failure_probability));
     text += table_row("collisions", interval("worlds", worlds.collisions, runs, worlds.collision_probability));
+    if (worlds.lateral_collisions > 0) {
+        text += table_row(
+            "", fmt::format("{} of them only because the vehicle is beside its plane", worlds.lateral_collisions));
+    }
     text += table_row("clearance", fmt::format("p01 {}, p10 {}, p50 {}", metres(worlds.clearance_p01_m),
                                                metres(worlds.clearance_p10_m), metres(worlds.clearance_p50_m)));
     text += table_row("tracking error",

@@ -31,7 +31,8 @@ NumberTable table_of(const judge::JudgedFlight& flight, const ArmParameters& arm
                    "arm_rad", "vx_m_s",  "vz_m_s",  "clearance_m", "ee_x_m", "ee_z_m", "energy_j"};
     table.columns.resize(table.names.size());
     for (const judge::JudgedRow& row : flight.rows) {
-        const auto& [x_m, z_m, pitch_rad, arm_rad] = row.pose;
+        const double x_m = row.pose.x_m, z_m = row.pose.z_m;
+        const double pitch_rad = row.pose.pitch_rad, arm_rad = row.pose.arm_rad;
         const double cos = std::cos(pitch_rad), sin = std::sin(pitch_rad);
         const double ee_x_m =
             x_m + arm.joint_x_m * cos + arm.joint_z_m * sin + arm.length_m * std::cos(pitch_rad + arm_rad);
@@ -58,6 +59,7 @@ PlayableFlight playable(const judge::JudgedFlight& flight, const Problem& proble
         const World world = draw_world(*problem.uncertainty, problem.robot, source.seed, *index);
         shown.scene_x_m = world.scene_x_m;
         shown.scene_z_m = world.scene_z_m;
+        shown.lateral_m = make_world(problem.robot, world).lateral_m;
     }
     return shown;
 }

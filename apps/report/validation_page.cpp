@@ -39,6 +39,7 @@ Json flights_json(const std::vector<PlayableFlight>& flights) {
         list.push_back({{"world", flight.world ? Json(*flight.world) : Json()},
                         {"outcome", flight.outcome},
                         {"scene_offset_m", {flight.scene_x_m, flight.scene_z_m}},
+                        {"lateral_m", flight.lateral_m},
                         {"flight", flight_json(flight.rows)}});
     }
     return list;

@@ -20,6 +20,7 @@ struct PlayableFlight {
     /// clearance_m, ee_x_m, ee_z_m, energy_j. A clearance without obstacles is NaN.
     NumberTable rows;
     double scene_x_m = 0, scene_z_m = 0;  ///< where this world has the obstacles, from where the problem has them
+    double lateral_m = 0;                 ///< how far the vehicle is to the left of where they have its plane
 };
 
 /// Clearance [m] over many flights, step by step; see docs/validation.md.

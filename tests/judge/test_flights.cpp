@@ -405,3 +405,48 @@ TEST_CASE("the judge and the planner agree about touches, in the nominal world a
         }
     }
 }
+
+TEST_CASE("Beside a wall along the plane the judge has the vehicle where the planner has it, with every law") {
+    constexpr double gap_m = 0.15;
+    const double half_width_m = 0.52;  // of the shipped robot
+    CascadedPid soft;
+    soft.horizontal_velocity_ki = 0;
+    const ControlLaw shipped_law = shipped("open_air").robot.controller.law;
+    for (const ControlLaw& law : {shipped_law, ControlLaw(soft), ControlLaw(PlanarLyapunov{})}) {
+        Problem problem = shipped("open_air");
+        problem.robot.controller.law = law;
+        make_real(problem.robot);
+        problem.uncertainty.emplace();
+        problem.obstacles = {box("wall", {60, 0.2, 60}, {0, half_width_m + gap_m + 0.1, 0})};
+        const Configuration from = problem.start.at;
+        const Configuration to{from[plane::x] + 1, from[plane::z], from[plane::arm]};
+        problem.goal = configuration_goal(to[plane::x], to[plane::z], to[plane::arm]);
+        problem.goal.hold_s = 1;
+        const Plan plan{{{0, at_rest(from)}, {400, at_rest(to)}}, 0.01};
+        const judge::PlanJudge judge(problem);
+        World world;
+        world.scene_y_m = -0.02;
+        world.position_bias_y_m = 0.01;
+        world.wind_y_m_s = 0.4;
+        world.gust_y_m_s = 0.3;
+        world.lateral_error_m = -0.005;
+        const double lateral_m = make_world(problem.robot, world).lateral_m;
+        CAPTURE(law.index(), lateral_m);
+        CHECK(lateral_m != Approx(0.005).margin(1e-3));  // the wind is part of it
+        const judge::JudgedFlight mine = judge.fly(plan, {true, world});
+        compare(mine, *executed(problem, plan, true, world));
+        CHECK(mine.min_clearance_m == Approx(gap_m - lateral_m).margin(1e-4));
+        // Too far to the left, and what ends such a flight is named.
+        world.lateral_error_m = 0.2;
+        const judge::JudgedFlight touching = judge.fly(plan, {true, world});
+        CHECK(touching.outcome == judge::Outcome::collision);
+        CHECK(touching.is_lateral_collision);
+        compare(touching, *executed(problem, plan, true, world));
+        // Nor does what is in its way count as beside it.
+        problem.obstacles = {box("post", {0.2, 10, 60}, {to[plane::x], 0, 0})};
+        world.lateral_error_m = 0.01;
+        const judge::JudgedFlight stopped = judge::PlanJudge(problem).fly(plan, {true, world});
+        CHECK(stopped.outcome == judge::Outcome::collision);
+        CHECK_FALSE(stopped.is_lateral_collision);
+    }
+}

@@ -70,6 +70,7 @@ TEST_CASE("Statistics of a sample made by hand") {
         world.mass_scale = i % 2 == 0 ? 0.01 : -0.01;
         if (i == 3) {
             run.outcome = judge::Outcome::collision;
+            run.is_lateral_collision = true;
         } else if (i == 50) {
             run.outcome = judge::Outcome::goal_missed;
         }
@@ -79,6 +80,7 @@ TEST_CASE("Statistics of a sample made by hand") {
     const judge::WorldRuns found = judge::statistics_of(runs, worlds, problem);
     CHECK(found.failures == 2);
     CHECK(found.collisions == 1);
+    CHECK(found.lateral_collisions == 1);
     CHECK(found.failure_probability.estimate == 0.02);
     CHECK(found.clearance_p50_m == Approx(0.505));
     CHECK(found.clearance_p01_m == Approx(0.0199));

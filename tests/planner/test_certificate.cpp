@@ -10,6 +10,7 @@
 #include "../support/random.hpp"
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
+#include "downwash/base/quantile.hpp"
 #include "downwash/planner/certificate.hpp"
 #include "downwash/planner/goal_search.hpp"
 #include "downwash/planner/goal_sequence.hpp"
@@ -26,6 +27,23 @@ using namespace downwash;
 using namespace downwash::test;
 
 namespace {
+
+/// The uncertain problem with a wall along the plane, so far to the left of the rotors. It begins after the start.
+Problem beside_a_wall(double gap_m) {
+    Problem problem = uncertain_problem();
+    problem.obstacles.push_back(box("wall", {12, 0.2, 12}, {3.5, 0.5105 + gap_m + 0.1, 0}));
+    problem.aero.min_distance_radii = 0.1;
+    problem.planner.safety_margin_m = 0.04;
+    problem.robot.multirotor.drag = {0.3, 0.02};
+    return problem;
+}
+
+/// Nothing displaces the vehicle beside its plane.
+void keep_in_plane(Problem& problem) {
+    Uncertainty& uncertainty = *problem.uncertainty;
+    uncertainty.scene_y_m = uncertainty.lateral_error_m = uncertainty.wind_y_m_s = uncertainty.gust_m_s = {};
+    uncertainty.position_bias_m = {};  // x and z, too
+}
 
 /// The share of searches in which some plan passes, all of which fail with probability p; ten plans in each.
 double share_that_passes(double p, double max_p, double confidence, int searches) {
@@ -134,6 +152,66 @@ TEST_CASE("A plan is solved with its certificate, the same on any number of thre
         CHECK(same_bytes(*more.plan, *one.plan));
         CHECK(same_bytes(*more.execution, *one.execution));
     }
+}
+
+TEST_CASE(
+    "Beside a wall along the plane the clearance differs from world to world, as far as the vehicle is beside it") {
+    constexpr double gap_m = 0.22;
+    const Problem problem = beside_a_wall(gap_m);
+    const std::shared_ptr<const FlightModel> model = make_flight_model(problem);
+    WorldFlights flights(problem, model, model->make_map(problem.bounds), 1, ClearanceError{0, 0});
+    Plan plan;
+    plan.tick_s = model->tick().tick_s;
+    plan.reference = {{0, at_rest(problem.start.at)}, {600, at_rest({-1, 2.5, 0.5})}};
+    std::vector<FlownWorld> worlds;
+    for (std::uint64_t index = 1; index <= 100; ++index) {
+        worlds.push_back(make_world(problem.robot, draw_world(*problem.uncertainty, problem.robot, 1, index)));
+    }
+    std::vector<double> clearances_m;
+    const std::vector<WorldFlight> flown = flights.fly(plan, 1, worlds);
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        CAPTURE(i, worlds[i].lateral_m);
+        CHECK_FALSE(flown[i].is_lateral_collision);
+        CHECK(flown[i].min_clearance_m == Approx(gap_m - worlds[i].lateral_m).margin(1e-6));
+        clearances_m.push_back(flown[i].min_clearance_m);
+    }
+    CHECK(quantile(clearances_m, 0.01) < gap_m - 0.035);
+    CHECK(quantile(clearances_m, 0.5) == Approx(gap_m).margin(0.02));
+    CHECK(quantile(clearances_m, 0.99) > gap_m + 0.035);
+}
+
+TEST_CASE("A plan 22 cm beside a wall gets its certificate, one 5 cm beside it only if nothing displaces the vehicle") {
+    const Solution apart = solve(beside_a_wall(0.22));
+    REQUIRE(apart.certificate);
+    CHECK(apart.certificate->is_given);
+    CHECK(apart.certificate->clearance_m.p01 < apart.certificate->clearance_m.p10 - 0.01);
+    CHECK(apart.certificate->clearance_m.p10 < apart.certificate->clearance_m.p50 - 0.01);
+
+    Problem near = beside_a_wall(0.05);
+    near.planner.worlds = 1;  // the search does not know: the certificate has to
+    near.uncertainty->scene_y_m = Spread::of_sd(0.05);
+    const Solution refused = solve(near);
+    CHECK(refused.status == Status::approximate);
+    REQUIRE(refused.certificate);
+    CHECK_FALSE(refused.certificate->is_given);
+    CHECK(refused.certificate->causes.contains("lateral_collision"));
+
+    near = beside_a_wall(0.05);
+    keep_in_plane(near);
+    const Solution kept = solve(near);
+    REQUIRE(kept.certificate);
+    CHECK(kept.certificate->is_given);
+    CHECK(kept.certificate->clearance_m.p01 == Approx(0.05).margin(1e-6));
+    CHECK(kept.certificate->clearance_m.p50 == Approx(0.05).margin(1e-6));
+}
+
+TEST_CASE("A search in worlds finds no way that only a vehicle in its plane gets through") {
+    Problem problem = beside_a_wall(0.05);
+    const Solution solution = solve(problem);
+    CHECK(solution.status != Status::solved);
+    CHECK(solution.planning.candidates.checked == 0);
+    keep_in_plane(problem);
+    CHECK(solve(problem).planning.candidates.checked > 0);
 }
 
 TEST_CASE("The clearances of a certificate are those of flights with direct aerodynamics") {

@@ -26,6 +26,7 @@ ValidationRecord validation() {
     flight.rows.names = {"t_s", "x_m"};
     flight.rows.columns = {{0, 0.01}, {1, 2}};
     flight.scene_x_m = 0.02;
+    flight.lateral_m = -0.03;
     record.flights = {flight};
     return record;
 }
@@ -47,6 +48,7 @@ TEST_CASE("the page of a validation carries findings, plan, flights and the scen
     const json& flight = data["flights"][0];
     CHECK(flight["world"] == 3);
     CHECK(flight["scene_offset_m"] == json({0.02, 0.0}));
+    CHECK(flight["lateral_m"] == -0.03);
     CHECK(flight["flight"]["rows"] == 2);
     CHECK(flight["flight"]["columns"] == json({"t_s", "x_m"}));
     CHECK(data["scene"]["obstacles"].size() == problem.obstacles.size());

@@ -207,6 +207,36 @@ TEST_CASE("Clearance changes no faster than the robot moves") {
     }
 }
 
+TEST_CASE("A robot beside its plane is as far from everything as one in a plane that lies there, for both checkers") {
+    reference::Dice dice(12);
+    for (int round = 0; round < 100; ++round) {
+        const std::vector<Obstacle> obstacles = dice.obstacles(3);
+        const RobotShape robot = dice.robot();
+        const PlaneOfMotion plane = dice.plane();
+        const double lateral_m = dice.between(-0.5, 0.5);
+        const PlaneOfMotion beside(plane.to_world(0, lateral_m, 0), plane.heading_rad());
+        const PlanarPose pose = dice.pose();
+        PlanarPose moved = pose;
+        moved.lateral_m = lateral_m;
+        CAPTURE(round, lateral_m);
+        const auto scene = std::make_shared<const Scene>(obstacles);
+        for (const CollisionCheckerKind kind : all_collision_checkers) {
+            const CollisionChecker checker(scene, plane, robot, kind);
+            const double clearance_m = CollisionChecker(scene, beside, robot, kind).clearance_m(pose);
+            const double margin_m = kind == CollisionCheckerKind::own ? 1e-8 : 1e-3;
+            CHECK(std::max(0.0, checker.clearance_m(moved)) == Approx(std::max(0.0, clearance_m)).margin(margin_m));
+            CHECK(checker.is_nearer_than(moved, std::max(0.0, clearance_m) + 2 * margin_m));
+            CHECK_FALSE((clearance_m > 3 * margin_m && checker.is_nearer_than(moved, clearance_m - 2 * margin_m)));
+        }
+    }
+    // By hand: a wall 1 m to the left of the plane, and a body 0.3 m wide.
+    const Obstacle wall{"", Box{{4, 1, 4}}, {0, 1.5, 0}, {}};
+    const CollisionChecker checker = checker_of({wall}, plain_robot());
+    CHECK(checker.clearance_m({0, 0, 0, 0, 0.3}) == about(0.55));
+    CHECK(checker.clearance_m({0, 0, 0, 0, -0.3}) == about(1.15));
+    CHECK(checker.is_nearer_than({0, 0, 0, 0, std::nan("")}, 0));
+}
+
 TEST_CASE("Whole turns of the arm and the order of the obstacles change nothing") {
     reference::Dice dice(7);
     for (int round = 0; round < 100; ++round) {

@@ -28,7 +28,7 @@ TEST_CASE("every uncertainty has one key, and is either drawn for a world or a n
         CAPTURE(key.path);
         CHECK(paths.insert(key.path).second);
         const auto drawn = std::ranges::count(world_parameters(), key.spread, &WorldParameter::spread);
-        CHECK((drawn > 0) == (key.spread != nullptr && key.noise == nullptr));
+        CHECK((drawn > 0 || key.noise != nullptr) == (key.spread != nullptr));
         for (const WorldParameter& parameter : world_parameters()) {
             CHECK((parameter.spread != key.spread || parameter.name.starts_with(key.path)));
         }
@@ -64,6 +64,32 @@ TEST_CASE("worlds differ in what they draw, noise and gusts have one size in all
     const World nominal = draw_world(Uncertainty{}, late_robot(), 1, 0);
     CHECK(std::ranges::all_of(world_parameters(), [&](const WorldParameter& each) { return each.of(nominal) == 0; }));
     CHECK(nominal.gust_m_s == 0);
+}
+
+TEST_CASE("what displaces a vehicle beside its plane is drawn last, from its own spread, and changes nothing else") {
+    Uncertainty in_plane;
+    in_plane.scene_y_m = in_plane.wind_y_m_s = in_plane.lateral_error_m = {};
+    std::vector<std::string> lateral;
+    for (const WorldParameter& parameter : world_parameters()) {
+        if (parameter.is_lateral) {
+            lateral.push_back(parameter.name);
+        } else {
+            CHECK(lateral.empty());
+        }
+    }
+    CHECK(lateral == std::vector<std::string>{"aero.scene_offset_m.y", "sensing.position_bias_m y",
+                                              "vehicle.lateral_error_m", "wind.steady_m_s.y", "wind.gust_m_s y"});
+    double squares = 0;
+    for (std::uint64_t index = 1; index <= 400; ++index) {
+        const World all = draw_world(Uncertainty{}, late_robot(), 1, index);
+        const World some = draw_world(in_plane, late_robot(), 1, index);
+        for (const WorldParameter& each : world_parameters()) {
+            const bool is_exact = each.is_lateral && (in_plane.*each.spread).form == Spread::Form::exact;
+            CHECK(each.of(some) == (is_exact ? 0 : each.of(all)));
+        }
+        squares += all.gust_y_m_s * all.gust_y_m_s;
+    }
+    CHECK(std::sqrt(squares / 400) == Approx(0.3).epsilon(0.1));  // as strong as the gusts of every tick
 }
 
 TEST_CASE("only a robot with a wash draws how fast it is, and all else of its worlds is as without one") {

@@ -17,6 +17,7 @@ class Certificate(page_test.BrowserTest):
         self.assertIn("Certified: 1 of 1 016 worlds failed; the failure probability is at most 1 % with 95 % confidence.",
                       self.verdict())
         self.assertIn("in world 17 of seed 1", self.verdict())
+        self.assertIn("to the right of its plane", self.verdict())
         self.assertIn("1.731", self.one(".figures", "e.textContent"))
         self.assertIn("--world 17", self.one(".certificate .command code", "e.textContent"))
         self.assertEqual(len(self.every(".worst-worlds tbody tr", "1")), 10)

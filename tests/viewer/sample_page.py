@@ -332,7 +332,7 @@ def certified_report():
     report = solved_report()
     report["solution"]["certificate"] = certificate_json(True, 1016, 1, (1 / 1016, 0.000025, 0.00547), {"collision": 1})
     report["solution"]["planning"]["first_certified_wall_s"] = 1.731
-    report["solution"]["execution"]["world"] = {"index": 17, "seed": 1}
+    report["solution"]["execution"].update(world={"index": 17, "seed": 1}, lateral_m=-0.031)
     return report
 
 

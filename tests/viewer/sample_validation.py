@@ -15,7 +15,7 @@ PARAMETERS = {"aero.scene_offset_m.z": 0.62, "aero.ceiling_scale": -0.42, "sensi
 
 
 def flight(columns, world, outcome, rows=None, offset=(0, 0)):
-    return {"world": world, "outcome": outcome, "scene_offset_m": list(offset),
+    return {"world": world, "outcome": outcome, "scene_offset_m": list(offset), "lateral_m": -0.031,
             "flight": flight_json(COLUMNS, [np.asarray(columns[name])[:rows] for name in COLUMNS])}
 
 
@@ -46,7 +46,8 @@ def worlds_report(failures=664, runs=1000):
     shares = [failures / runs * (0.4 + 0.13 * i) for i in range(10)]
     worst = [{"world": 2 + 7 * i, "outcome": "collision" if failures > i else "ok", "min_clearance_m": 0.0} for i in range(10)]
     report["findings"].update(
-        runs=runs, collisions=failures // 3, collision_probability=probability(failures // 3, runs), failures=failures,
+        runs=runs, collisions=failures // 3, lateral_collisions=failures // 30,
+        collision_probability=probability(failures // 3, runs), failures=failures,
         failure_probability=probability(failures, runs), clearance_m={"p01": 0.0, "p10": 0.0, "p50": 0.072},
         tracking_error_m={"p50": 0.117, "p90": 0.354, "p99": 0.384},
         run_energy_j={"p50": 9926.98, "p90": 10884.5, "p99": 11486.5}, worst=worst,

@@ -30,8 +30,11 @@ function failure_lines(model, how) {
     return lines;
 }
 
-/** The world of the flight, unless it is the nominal one. */
-function world_text({world}) { return world ? `, in world ${world.index} of seed ${world.seed}` : ""; }
+/** The world of the flight and where it has the vehicle, unless it is the nominal one. */
+function world_text({world, lateral_m}) {
+    const beside = lateral_m ? `, ${place(Math.abs(lateral_m))} to the ${lateral_m < 0 ? "right" : "left"} of its plane` : "";
+    return world ? `, in world ${world.index} of seed ${world.seed}${beside}` : "";
+}
 
 /** What blocked a search without a plan. */
 function blocked_lines(model) {

@@ -13,14 +13,16 @@ import {flight_model} from "./model.js";
 
 const name_of = ({world, outcome}) => `${world === null ? "undisturbed" : `world ${world}`}: ${outcome_name(outcome)}`;
 
-/** Where the obstacles of a world are. */
-function offset_text({world, scene_offset_m: [x_m, z_m]}) {
+/** Where the obstacles of a world are, and how far the vehicle is beside its plane among them. */
+function offset_text({world, scene_offset_m: [x_m, z_m], lateral_m}) {
     if (world === null) {
         return "Everything is as the problem says.";
     }
     const aside = `${place(Math.abs(x_m))} ${x_m < 0 ? "left" : "right"}`;
     const up = `${place(Math.abs(z_m))} ${z_m < 0 ? "below" : "above"}`;
-    return `The obstacles are drawn where they are in this world: ${aside} of and ${up} where the problem has them.`;
+    const beside = `${place(Math.abs(lateral_m))} to the ${lateral_m < 0 ? "right" : "left"} of its plane`;
+    return `The obstacles are drawn where they are in this world: ${aside} of and ${up} where the problem has them. ` +
+        `The vehicle flies ${beside} among them, which the drawing does not show.`;
 }
 
 /** @param {AbortSignal} signal ends the player */

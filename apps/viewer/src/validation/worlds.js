@@ -46,6 +46,10 @@ export function make_worlds(report) {
           h("div", {class: "card"}, h("h3", null, "Failure probability"),
             make_probability_bar(findings.failure_probability, "Failure probability", confidence),
             h("h3", {class: "second"}, "Collision probability"),
-            make_probability_bar(findings.collision_probability, "Collision probability", confidence)),
+            make_probability_bar(findings.collision_probability, "Collision probability", confidence),
+            findings.lateral_collisions > 0 ?
+                h("p", {class: "muted"},
+                  `${findings.lateral_collisions} of ${findings.collisions} only because the vehicle is beside its plane.`) :
+                null),
           make_quantiles(findings), make_worst(report)));
 }
