@@ -57,8 +57,8 @@ std::string dialect_text(const CsvFacts& csv) {
 }
 
 std::string columns_text(const CsvFacts& csv) {
-    constexpr std::size_t most = 6;
     const auto listed = [](const std::vector<std::string>& names, const auto& text) {
+        constexpr std::size_t most = 6;
         std::string list;
         for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
             list += (i > 0 ? ", " : "") + text(names[i]);
