@@ -43,18 +43,26 @@ class AnyOrder {
     [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
     [[nodiscard]] bool has_way() const { return best_.status == Status::solved; }
     [[nodiscard]] bool is_limited() const { return problem_.energy_budget_j.has_value(); }
+    /// Whether time alone is limited: it goes into direct flights and certificates, too, which take no iterations.
+    [[nodiscard]] bool is_timed() const { return !problem_.planner.max_iterations; }
 
     [[nodiscard]] bool is_done() const { return is_over() || (options_.stop_at_first_solution && has_way()); }
     void search();
+    [[nodiscard]] bool has_energy_to_spare(const PlaceOrder& order) const;
     [[nodiscard]] bool leaves_energy(const PlaceOrder& order);
+    [[nodiscard]] bool finds_more_places();
+    [[nodiscard]] SearchBudget budget_of_try() const;
     [[nodiscard]] SearchBudget share_of_left(double share) const;
+    [[nodiscard]] SequenceEffort effort() const;
     void compare_orders(const SearchBudget& budget);
     void tell_of_legs();
     [[nodiscard]] VisitOrder described(const PlaceOrder& order) const;
     [[nodiscard]] double cost_when_flown(const Found& way) const { return cost_of(way, problem_.planner.objective); }
     [[nodiscard]] bool attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only);
     [[nodiscard]] SolveOptions options_of_attempt(bool is_first_only, const PlaceOrder& order);
-    void learn_from_failure(const PlaceOrder& order, const Found& failed);
+    void learn_from_failure(const PlaceOrder& order, const SearchResult& result);
+    void give_up_leg(const PlaceOrder& order, std::size_t goal);
+    [[nodiscard]] std::size_t place_of(const PlaceOrder& order, std::size_t goal) const;
     void keep_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
                         std::uint64_t iterations_before);
     void explain();
@@ -71,6 +79,7 @@ class AnyOrder {
     Stopwatch clock_;
     double spent_at_s_ = 0;                                  ///< when time was last taken from what is left
     double told_at_s_ = 0;                                   ///< when the caller was last told of legs
+    bool is_thrifty_ = false;                                ///< the first plan of each leg may take too much energy
     std::uint64_t nodes_before_ = 0, nodes_of_attempt_ = 0;  ///< of searches that are over and of the one that is not
     std::uint64_t attempts_ = 0;                             ///< plans that asked for a certificate
     PlaceOrder failed_;                                      ///< in which the last search for a flight failed
@@ -88,26 +97,37 @@ void AnyOrder::spend(std::uint64_t iterations_before) {
     left_.spend(work);
 }
 
-/// First a flight through all in the order that looks best; then orders are compared; then a flight in the best of
-/// them or, where there is none, in the next one.
+constexpr double share_of_more_legs = 0.2;
+
+/// First a flight through all in the order that looks best, where only time is limited with all of it: a list in that
+/// order would have no more. Then orders are compared; then a flight in the best of them or, where there is none, in
+/// the next one.
 void AnyOrder::search() {
-    constexpr double share_of_first = 0.15, share_of_legs = 0.35, share_of_try = 0.35, share_of_more_legs = 0.2;
+    constexpr double share_of_first = 0.15, share_of_legs = 0.35, share_before_a_way = 0.15;
     const PlaceOrder likely = comparison_.likely();
-    if (!is_limited() && is_order(likely)) {
-        static_cast<void>(attempt(likely, left_.part(share_of_first), true));
+    is_thrifty_ = is_limited() && !(is_timed() && has_energy_to_spare(likely));
+    if (!is_thrifty_ && is_order(likely)) {
+        static_cast<void>(attempt(likely, is_timed() ? left_ : left_.part(share_of_first), true));
     }
     if (!is_done()) {
-        compare_orders(left_.part(share_of_legs));
+        compare_orders(left_.part(is_timed() && !has_way() ? share_before_a_way : share_of_legs));
     }
-    bool has_grown = false;
-    for (PlaceOrder order = comparison_.chosen(); !is_done() && is_order(order);) {
-        const bool is_known = has_way() && order.places == best_order_.places;
-        if (!is_known && !attempt(order, share_of_left(share_of_try), true)) {
+    bool has_grown = false, has_looked_again = false;
+    for (PlaceOrder order = comparison_.chosen(); !is_done();) {
+        if (!is_order(order) && !(is_timed() && has_way())) {
+            if (!finds_more_places()) {
+                break;
+            }
+            order = comparison_.chosen();
+            continue;
+        }
+        const bool is_known = has_way() && (order.places == best_order_.places || !is_order(order));
+        if (!is_known && !attempt(order, budget_of_try(), true)) {
             compare_orders(left_.part(share_of_more_legs));
             order = comparison_.chosen();
             continue;
         }
-        if (!has_grown && leaves_energy(order)) {
+        if (!has_grown && is_order(order) && leaves_energy(order)) {
             has_grown = true;
             compare_orders(left_.part(share_of_more_legs));
             if (PlaceOrder more = comparison_.chosen(); more.places.size() > order.places.size()) {
@@ -115,9 +135,53 @@ void AnyOrder::search() {
                 continue;
             }
         }
+        if (!std::exchange(has_looked_again, true) && finds_more_places()) {
+            if (PlaceOrder more = comparison_.chosen(); more.places.size() > best_order_.places.size()) {
+                order = std::move(more);
+                continue;
+            }
+        }
         static_cast<void>(attempt(best_order_, left_, options_.stop_at_first_solution));
         break;
     }
+}
+
+/// Where time alone is limited and legs were searched for in vain: searches for them again, for longer. @return whether
+/// there were any
+bool AnyOrder::finds_more_places() {
+    if (!is_timed() || !table_.search_on()) {
+        return false;
+    }
+    compare_orders(left_.part(share_of_more_legs));
+    return true;
+}
+
+/// Whether first plans of its legs are likely to take no more than the budget: they may be twice as dear as lower
+/// bounds.
+bool AnyOrder::has_energy_to_spare(const PlaceOrder& order) const {
+    constexpr double factor = 2;
+    return factor * order.energy_j <= comparison_.energy_limit_j;
+}
+
+/// What a search for a first flight in another order may take. Without any flight and with time alone, it may take all:
+/// it ends by itself where it comes no farther (effort()).
+SearchBudget AnyOrder::budget_of_try() const {
+    constexpr double share = 0.35;
+    return is_timed() && !has_way() ? left_ : share_of_left(share);
+}
+
+SequenceEffort AnyOrder::effort() const {
+    constexpr double patience = 0.25, patience_with_energy = 0.1;  // there, fewer targets may be the answer
+    constexpr double min_round = 0.22;                             // two rounds then, of 22 and 78 %
+    SequenceEffort effort;
+    effort.has_energy_to_spare = !is_thrifty_;
+    if (has_way()) {
+        effort.min_round = min_round;  // short rounds are for a first flight, and there is one
+    } else if (is_timed()) {
+        const SearchBudget all(problem_.planner);
+        effort.patience_s = all.part(is_thrifty_ ? patience_with_energy : patience).time_s();
+    }
+    return effort;
 }
 
 /// A share of what is left of the limits, at least a tenth of all.
@@ -191,9 +255,7 @@ bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool
     const double begun_at_s = clock_.seconds();
     const std::uint64_t iterations = record_.iterations;
     const SolveOptions options = options_of_attempt(is_first_only, order);
-    // Short rounds are for a first flight, and there is one.
-    constexpr double min_round = 0.22;  // two rounds then, of 22 and 78 %
-    SearchResult result = search_in_order(part, model_, options, has_way() ? min_round : 0, attempts_);
+    SearchResult result = search_in_order(part, model_, options, effort(), attempts_);
     attempts_ = result.attempts;
     Found& found = result.found;
     if (found.status == Status::solved && is_limited() && !found.execution) {
@@ -210,7 +272,7 @@ bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool
     spend(iterations);
     const bool is_found = found.status == Status::solved;
     if (!is_found) {
-        learn_from_failure(order, found);
+        learn_from_failure(order, result);
     }
     keep_if_better(order, std::move(result), begun_at_s, iterations);
     return is_found;
@@ -250,8 +312,9 @@ SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& 
 }
 
 /// What does not fly as a whole is not to be chosen again: at once where it takes too much energy, else when it fails
-/// for the second time.
-void AnyOrder::learn_from_failure(const PlaceOrder& order, const Found& failed) {
+/// for the second time. Without any flight and with time alone, one that ended with the time says nothing.
+void AnyOrder::learn_from_failure(const PlaceOrder& order, const SearchResult& result) {
+    const Found& failed = result.found;
     if (options_.stop.stop_requested()) {
         return;
     }
@@ -259,19 +322,38 @@ void AnyOrder::learn_from_failure(const PlaceOrder& order, const Found& failed) 
         (failed.execution && failed.execution->outcome == Outcome::over_budget) ||
         (failed.obstruction && failed.obstruction->cause == name_of(Outcome::over_budget)) ||
         (failed.certificate && failed.certificate->causes.contains(std::string(name_of(Outcome::over_budget))));
+    if (is_too_much && !is_thrifty_) {
+        is_thrifty_ = true;
+        return;
+    }
     if (is_too_much) {
         constexpr double less = 0.98;
         comparison_.energy_limit_j = less * std::min(comparison_.energy_limit_j, order.energy_j);
+        return;
+    }
+    if (is_timed() && !has_way()) {
+        if (result.hard_goal) {
+            // First a flight to the others, then more of this one.
+            give_up_leg(order, *result.hard_goal + 1);
+            table_.put_off(place_of(order, *result.hard_goal + 1));
+        }
         return;
     }
     if (order.places != failed_.places) {
         failed_ = order;  // it is tried once more: luck differs between searches
         return;
     }
-    const std::size_t goal = failed.missed_goal.value_or(1);
-    const std::size_t outside = table_.estimates().outside();
-    table_.give_up(goal >= 2 ? order.places[goal - 2] : outside,
-                   goal <= order.places.size() ? order.places[goal - 1] : outside);
+    give_up_leg(order, failed.missed_goal.value_or(1));
+}
+
+/// The place of a goal of an order by its number from 1; outside() where it returns and, for 0, where it starts.
+std::size_t AnyOrder::place_of(const PlaceOrder& order, std::size_t goal) const {
+    return goal > 0 && goal <= order.places.size() ? order.places[goal - 1] : table_.estimates().outside();
+}
+
+/// @param goal to which it leads, from 1
+void AnyOrder::give_up_leg(const PlaceOrder& order, std::size_t goal) {
+    table_.give_up(place_of(order, goal - 1), place_of(order, goal));
 }
 
 /// Takes a flight as the solution if it visits more than the present one, or as many for less; where there is none yet,

@@ -10,6 +10,12 @@
 namespace downwash::planning {
 namespace {
 
+constexpr std::string_view failed_certificate = "certificate";
+
+Obstruction obstruction_of(const Certificate& certificate, const Plan& plan) {
+    return {std::string(has_failed(certificate) ? failed_certificate : unfinished_certificate), plan.last(), 0};
+}
+
 /// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
 Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
     if (flight.outcome == Outcome::over_budget) {
@@ -31,7 +37,7 @@ CandidateCheck::CandidateCheck(const Problem& part, const Problem& whole, const 
       before_(before),
       checks_(checks),
       goals_(before.goals),
-      clock_(part.planner, options),
+      clock_(part.planner, options, checks.time_s),
       search_worlds_(plans_flights(part.planner.variant) && checks.worlds != nullptr ? checks.worlds->for_search(before)
                                                                                      : SearchWorlds{}),
       task_(part, *model.flight, model.own_map.get(), before.vehicle,
@@ -48,24 +54,31 @@ CandidateCheck::CandidateCheck(const Problem& part, const Problem& whole, const 
 bool CandidateCheck::counts(const Plan& plan, double cost) {
     counterexamples_.clear();
     clock_.found_first(clock_.seconds());
-    if (uncertified_ && is_over()) {
-        return false;  // too late for a certificate
+    if (is_too_late()) {
+        return false;
     }
-    ++clock_.record.candidates.checked;
+    Candidates& candidates = clock_.record.candidates;
+    ++candidates.checked;
     if (task_.problem.planner.check_execution) {
-        if (!flies_well(plan)) {
-            ++clock_.record.candidates.failed_execution;
+        if (!flies_well(plan, cost)) {
+            ++(unfinished_ ? candidates.unfinished : candidates.failed_execution);
             return false;
         }
     } else if (needs_certificate()) {
-        certify(before_.plan.followed_by(plan), [this] { return is_over(); });
+        certify(before_.plan.followed_by(plan), [this] { return check_is_over(); });
     }
     known_at_s_ = clock_.seconds();
     if (certifies() && !is_certified(plan, cost)) {
-        ++clock_.record.candidates.failed_certificate;
+        ++(has_failed(*certificate_) ? candidates.failed_certificate : candidates.unfinished);
         return false;
     }
     return can_stop(plan);
+}
+
+/// Too late for another certificate and, where a check may end after the search, to begin with another one.
+bool CandidateCheck::is_too_late() {
+    const bool has_checked = checks_.time_s > 0 && clock_.record.candidates.checked > 0;
+    return (uncertified_ || has_checked) && is_over();
 }
 
 /// Flies a plan to the last goal for its certificate.
@@ -76,14 +89,15 @@ void CandidateCheck::certify(const Plan& flown, const StopCondition& is_over) {
 
 /// Whether a plan is good when executed with direct aerodynamics. If the plan needs a certificate, another thread
 /// begins with it meanwhile; a plan that is not good has asked for none.
-bool CandidateCheck::flies_well(const Plan& plan) {
+bool CandidateCheck::flies_well(const Plan& plan, double cost) {
+    unfinished_.reset();
     const Plan flown = before_.plan.followed_by(plan);
     bool is_finished = false;
     std::atomic<bool> is_bad = false;
     const auto fly = [&] {
         try {
             flight_ = fly_directly(task_.model, start_, flown, goals_, task_.problem.energy_budget_j,
-                                   [this] { return is_over(); });
+                                   [this] { return check_is_over(); });
             is_finished = true;
         } catch (const WorkStopped&) {  // too late
         }
@@ -101,13 +115,14 @@ bool CandidateCheck::flies_well(const Plan& plan) {
         fly();
     }
     if (needs_certificate() && !is_bad) {
-        certify(flown, [&] { return is_bad || is_over(); });
+        certify(flown, [&] { return is_bad || check_is_over(); });
     }
     if (flight.valid()) {
         flight.get();
     }
     if (!is_finished) {
-        discarded_ = Obstruction{"unfinished_flight", plan.last(), 0};
+        discarded_ = Obstruction{std::string(unfinished_flight), plan.last(), 0};
+        unfinished_ = {plan, cost};
     } else if (is_bad) {
         discarded_ = obstruction_of(flight_->execution, task_.space);
     }
@@ -122,7 +137,8 @@ bool CandidateCheck::can_stop(const Plan& plan) {
         return true;
     }
     try {
-        stops_ = checks_.stop_finder->along(before_.plan.followed_by(plan), [this] { return clock_.is_over(); });
+        stops_ =
+            checks_.stop_finder->along(before_.plan.followed_by(plan), [this] { return clock_.is_over_for_checks(); });
     } catch (const WorkStopped&) {  // too late to know, and to find another one
         return !has_plan();
     }
@@ -137,7 +153,7 @@ bool CandidateCheck::is_certified(const Plan& plan, double cost) {
         ++result_.attempts;
     } else {
         certificate_ = checks_.worlds->screen(
-            before_.plan.followed_by(plan), goals_.size(), [this] { return is_over(); }, world_counter());
+            before_.plan.followed_by(plan), goals_.size(), [this] { return check_is_over(); }, world_counter());
         clock_.has_certified();
     }
     known_at_s_ = clock_.seconds();
@@ -147,7 +163,7 @@ bool CandidateCheck::is_certified(const Plan& plan, double cost) {
     if (!uncertified_ || certificate_->failure_probability.high < uncertified_->certificate.failure_probability.high) {
         uncertified_ = {plan, cost, *certificate_};
     }
-    discarded_ = Obstruction{"certificate", plan.last(), 0};
+    discarded_ = obstruction_of(*certificate_, plan);
     if (task_.worlds != nullptr) {
         counterexamples_ = checks_.worlds->counterexamples(*certificate_, before_);
     }
@@ -228,6 +244,13 @@ void CandidateCheck::report_failure(const FlightStatistics& statistics, const Ap
         found.plan = uncertified_->plan;
         found.cost = uncertified_->cost;
         found.certificate = uncertified_->certificate;
+        if (discarded_->cause == failed_certificate || discarded_->cause == unfinished_certificate) {
+            found.obstruction = obstruction_of(*found.certificate, *found.plan);  // which may be of a plan before
+        }
+    } else if (unfinished_) {
+        found.status = Status::approximate;
+        found.plan = unfinished_->plan;
+        found.cost = unfinished_->cost;
     }
 }
 

@@ -22,6 +22,9 @@ class StopFinder;
 struct PlanChecks {
     ProblemWorlds* worlds = nullptr;    ///< in which edges are flown and plans certified
     StopFinder* stop_finder = nullptr;  ///< by which a plan must not become clearly worse
+    /// Of a search that is one of several: how long after its beginning the check of its first plan may end [s], even
+    /// if its own limit is over. A search that is cut off there would have to begin anew.
+    double time_s = 0;
 };
 
 /// A plan that comes near the goal only.
@@ -46,6 +49,8 @@ class CandidateCheck {
     [[nodiscard]] SearchClock& clock() noexcept { return clock_; }
     /// Whether the search has to end.
     [[nodiscard]] bool is_over() { return result_.weak_goal || clock_.is_over(); }
+    /// Whether a check that has begun has to end, too.
+    [[nodiscard]] bool check_is_over() { return result_.weak_goal || clock_.is_over_for_checks(); }
 
     /// Whether a candidate counts. The search may go on meanwhile on other threads.
     [[nodiscard]] bool counts(const Plan& plan, double cost);
@@ -63,7 +68,8 @@ class CandidateCheck {
 
  private:
     [[nodiscard]] bool has_plan() const { return result_.found.status == Status::solved; }
-    [[nodiscard]] bool flies_well(const Plan& plan);
+    [[nodiscard]] bool is_too_late();
+    [[nodiscard]] bool flies_well(const Plan& plan, double cost);
     [[nodiscard]] bool needs_certificate() const { return certifies() && goals_.size() == checks_.worlds->goals(); }
     [[nodiscard]] bool certifies() const { return checks_.worlds != nullptr && task_.problem.planner.certify; }
     [[nodiscard]] WorldCounter world_counter() {
@@ -97,6 +103,12 @@ class CandidateCheck {
         Certificate certificate;
     };
     std::optional<Uncertified> uncertified_;
+    /// The plan that was discarded last, if its direct flight was cut off.
+    struct Unfinished {
+        Plan plan;
+        double cost;
+    };
+    std::optional<Unfinished> unfinished_;
     double known_at_s_ = 0;  ///< when it was known whether the last plan counts
 };
 

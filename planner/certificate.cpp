@@ -1,5 +1,8 @@
 #include "downwash/planner/certificate.hpp"
 
+#include <algorithm>
+#include <numeric>
+
 namespace downwash {
 
 double binomial_probability(std::uint64_t failures, std::uint64_t worlds, double p) noexcept {
@@ -55,6 +58,13 @@ FailureInterval failure_interval(std::uint64_t failures, std::uint64_t worlds, d
     return {static_cast<double>(failures) / static_cast<double>(worlds),
             failures == 0 ? 0 : 1 - failure_bound(worlds - failures, worlds, alpha),
             failure_bound(failures, worlds, alpha)};
+}
+
+bool has_failed(const Certificate& certificate) noexcept {
+    const auto flights = std::accumulate(certificate.causes.begin(), certificate.causes.end(), std::uint64_t{0},
+                                         [](std::uint64_t sum, const auto& cause) { return sum + cause.second; });
+    const std::uint64_t on_earlier_parts = flights - std::min(flights, certificate.failures);
+    return std::max(certificate.failures, on_earlier_parts) > CertificateTest::most_failures;
 }
 
 CertificateTest::CertificateTest(double max_failure_probability, double confidence, std::uint64_t attempt) {

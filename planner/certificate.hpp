@@ -54,6 +54,10 @@ struct Certificate {
 [[nodiscard]] DOWNWASH_EXPORT FailureInterval failure_interval(std::uint64_t failures, std::uint64_t worlds,
                                                                double confidence) noexcept;
 
+/// Whether flights of a plan have failed in so many worlds that it cannot pass. One without a certificate that has not
+/// was not flown in enough worlds.
+[[nodiscard]] DOWNWASH_EXPORT bool has_failed(const Certificate& certificate) noexcept;
+
 /// When a plan passes: a test in stages. A plan passes stage k with at most k failures in stage_worlds(k); with more
 /// failures than stages it fails. All plans of a search together pass by luck with probability 1 - confidence at most:
 /// the first attempt gets two thirds of it, attempt a > 1 a third of 1 / (a (a - 1)); and each stage three quarters of

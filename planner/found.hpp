@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "downwash/base/export.hpp"
@@ -14,6 +15,11 @@
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash {
+
+/// Cause of an obstruction: the search ended before the direct flight of its plan did.
+inline constexpr std::string_view unfinished_flight = "unfinished_flight";
+/// The search ended before its plan was flown in enough worlds.
+inline constexpr std::string_view unfinished_certificate = "unfinished_certificate";
 
 /// What a search has found, or what stood between it and its goal.
 struct Found {

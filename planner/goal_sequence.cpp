@@ -31,14 +31,15 @@ void add_trees(std::vector<TreeNode>& sum, const std::vector<TreeNode>& part) {
 }  // namespace
 
 GoalSequence::GoalSequence(const Problem& problem, const PlannerModel& model, const SolveOptions& options,
-                           double min_round, std::uint64_t attempts)
+                           const SequenceEffort& effort, std::uint64_t attempts)
     : problem_(problem),
       model_(model),
       options_(options),
-      min_round_(min_round),
+      effort_(effort),
       goals_(goals_of(problem)),
       searches_(goals_.size()),
       given_up_(goals_.size()),
+      vain_s_(goals_.size()),
       whole_(problem.planner),
       left_(whole_),
       part_budget_(whole_),
@@ -56,10 +57,13 @@ std::optional<GoalSequence::Part> GoalSequence::next() {
     const std::size_t number = round_.part_costs.size();
     Course& course = round_.courses.back();
     course.attempts = attempts_;
-    Part part{part_of(problem_, goals_[number], course), &course, options_of_part()};
+    Part part{part_of(problem_, goals_[number], course), &course, options_of_part(), 0};
     part.problem.planner.seed += searches_[number]++;
     part_budget_ = has_way() ? round_.left.part(share(number)) : budget_of(number).at_most(round_.left);
     part_budget_.limit(part.problem.planner);
+    if (!has_way() && std::isfinite(round_.left.time_s())) {
+        part.check_time_s = round_.left.time_s();
+    }
     return part;
 }
 
@@ -73,7 +77,7 @@ SearchResult GoalSequence::result() && {
     if (has_way() && best_.certificate) {
         best_.certificate->attempts = attempts_;
     }
-    return {std::move(best_), std::move(record_), attempts_};
+    return {std::move(best_), std::move(record_), attempts_, {}, hard_goal_};
 }
 
 /// Begins the next round, if there is time. After the first whole way, a round may take twice as much as all that
@@ -87,7 +91,7 @@ void GoalSequence::end_round() {
         round_work_ = record_;
         round_work_.iterations = std::max(round_work_.iterations, min_iterations);
         round_work_.wall_s = std::max(round_work_.wall_s, min_s);
-        whole_.part(min_round_ / 2).charge(round_work_);
+        whole_.part(effort_.min_round / 2).charge(round_work_);
     } else if (round_.way.status == Status::solved && is_better(round_.way)) {
         keep(std::move(round_));
     }
@@ -110,6 +114,10 @@ bool GoalSequence::give_up() {
         return false;
     }
     const std::size_t part = round_.part_costs.size();
+    if (vain_s_[part] >= effort_.patience_s) {
+        hard_goal_ = part;
+        return false;
+    }
     const bool is_second = ++given_up_[part] % 2 == 0;
     return go_back(is_second && part > 0 ? part - 1 : part);
 }
@@ -119,7 +127,7 @@ bool GoalSequence::give_up() {
 SearchBudget GoalSequence::budget_of(std::size_t part) const {
     constexpr double longest_first_s = 2.5;
     // Where energy is limited it is not the first plan of a part that counts, but a cheap one.
-    const double first_share = (problem_.energy_budget_j ? 0.6 : 0.25) / static_cast<double>(goals_.size());
+    const double first_share = (is_thrifty() ? 0.6 : 0.25) / static_cast<double>(goals_.size());
     const int doublings = static_cast<int>(std::min(given_up_[part], 30U));
     return whole_.part(first_share).within_s(longest_first_s).part(std::ldexp(1.0, doublings)).at_most(whole_);
 }
@@ -145,6 +153,7 @@ bool GoalSequence::goes_on_after(SearchResult part) {
     SearchRecord spent = part.record;
     if (found.status != Status::solved && !part.weak_goal) {
         part_budget_.charge(spent);
+        vain_s_[number] += spent.wall_s;
     }
     round_.left.spend(spent);
     left_.spend(spent);
@@ -156,7 +165,9 @@ bool GoalSequence::goes_on_after(SearchResult part) {
     way.obstruction = found.obstruction;
     way.missed_goal = number + 1;
     if (found.certificate) {
-        way.certificate = is_last ? found.certificate : std::nullopt;  // a part says nothing of the whole
+        // That a part passes says nothing of the whole; that it does not says why there is none.
+        const bool tells = is_last || found.status != Status::solved;
+        way.certificate = tells ? found.certificate : std::nullopt;
     }
     const double begun_at_s = record_.wall_s;
     const std::uint64_t iterations_before = record_.iterations;
@@ -200,7 +211,7 @@ SolveOptions GoalSequence::options_of_part() {
     inner.known_plan.reset();
     inner.known_places.clear();
     // A first plan is far from the cheapest.
-    inner.stop_at_first_solution = !has_way() && !problem_.energy_budget_j;
+    inner.stop_at_first_solution = !has_way() && !is_thrifty();
     const std::size_t goal = round_.part_costs.size() + 1;
     const bool is_last = goal == goals_.size();
     if (options_.on_progress) {

@@ -14,6 +14,15 @@
 
 namespace downwash::planning {
 
+/// How a sequence of searches uses its limits.
+struct SequenceEffort {
+    double min_round = 0;  ///< share of the limits that a round after the first takes at least
+    /// Where energy is limited: there is plenty of it, so that the first plan of each part will do.
+    bool has_energy_to_spare = false;
+    /// It ends when the searches for the way to one goal were in vain for so long [s], until there is a whole way.
+    double patience_s = std::numeric_limits<double>::infinity();
+};
+
 /// Plans goals in their order with one search for each, from the whole vehicle that holds at the goal before: in a
 /// first round until there is a whole way, then in rounds that take twice as long each, for cheaper ways. Where the
 /// flights of a plan fail on the way to an earlier goal, the search goes back to that goal. More of a round's time goes
@@ -27,10 +36,9 @@ namespace downwash::planning {
 ///     }
 class DOWNWASH_EXPORT GoalSequence {
  public:
-    /// @param min_round share of the limits that a round after the first takes at least
     /// @param attempts plans that asked for a certificate before   @pre problem, model and options outlive it
-    GoalSequence(const Problem& problem, const PlannerModel& model, const SolveOptions& options, double min_round,
-                 std::uint64_t attempts);
+    GoalSequence(const Problem& problem, const PlannerModel& model, const SolveOptions& options,
+                 const SequenceEffort& effort, std::uint64_t attempts);
     GoalSequence(const GoalSequence&) = delete;
     GoalSequence& operator=(const GoalSequence&) = delete;
 
@@ -39,6 +47,7 @@ class DOWNWASH_EXPORT GoalSequence {
         Problem problem;       ///< problem with a single goal, the limits and the seed of this search
         const Course* before;  ///< course at whose end the search begins, until add()
         SolveOptions options;  ///< report its progress as that of the whole
+        double check_time_s;   ///< PlanChecks::time_s of this search
     };
     /// The next search; empty when all is done.
     [[nodiscard]] std::optional<Part> next();
@@ -62,6 +71,7 @@ class DOWNWASH_EXPORT GoalSequence {
     [[nodiscard]] bool goes_on_after(SearchResult part);
     [[nodiscard]] bool go_back(std::size_t part);
     [[nodiscard]] bool give_up();
+    [[nodiscard]] bool is_thrifty() const { return problem_.energy_budget_j && !effort_.has_energy_to_spare; }
     void end_round();
     [[nodiscard]] SearchBudget budget_of(std::size_t part) const;
     [[nodiscard]] SolveOptions options_of_part();
@@ -76,11 +86,13 @@ class DOWNWASH_EXPORT GoalSequence {
     const Problem& problem_;
     const PlannerModel& model_;
     const SolveOptions& options_;
-    double min_round_;  ///< see the constructor
+    SequenceEffort effort_;
     std::vector<Goal> goals_;
     /// Number of searches for the way to each goal so far; each draws other samples.
     std::vector<std::uint32_t> searches_;
-    std::vector<std::uint32_t> given_up_;  ///< how many of these took too long
+    std::vector<std::uint32_t> given_up_;   ///< how many of these took too long
+    std::vector<double> vain_s_;            ///< how long these took together
+    std::optional<std::size_t> hard_goal_;  ///< the goal that patience ended at
     SearchBudget whole_;
     SearchBudget left_;
     SearchBudget part_budget_;  ///< budget of the search that is going on

@@ -13,10 +13,11 @@ namespace downwash::planning {
 namespace {
 
 /// The search for the way through several goals.
-SearchResult search_in_turn(const Problem& problem, const PlannerModel& model, const PlanChecks& checks,
-                            const SolveOptions& options, double min_round, std::uint64_t attempts) {
-    GoalSequence sequence(problem, model, options, min_round, attempts);
+SearchResult search_in_turn(const Problem& problem, const PlannerModel& model, PlanChecks checks,
+                            const SolveOptions& options, const SequenceEffort& effort, std::uint64_t attempts) {
+    GoalSequence sequence(problem, model, options, effort, attempts);
     while (const std::optional<GoalSequence::Part> part = sequence.next()) {
+        checks.time_s = part->check_time_s;
         sequence.add(search_goal(part->problem, problem, model, *part->before, checks, part->options));
     }
     return std::move(sequence).result();
@@ -41,7 +42,7 @@ SearchResult search_alone(const Problem& problem, const PlannerModel& model, con
 }  // namespace
 
 SearchResult search_in_order(const Problem& problem, const PlannerModel& model, const SolveOptions& options,
-                             double min_round, std::uint64_t attempts) {
+                             const SequenceEffort& effort, std::uint64_t attempts) {
     std::optional<ProblemWorlds> worlds;
     if (problem.uncertainty) {
         worlds.emplace(problem, model, options);
@@ -53,7 +54,7 @@ SearchResult search_in_order(const Problem& problem, const PlannerModel& model, 
     }
     const PlanChecks checks{worlds ? &*worlds : nullptr, stop_finder ? &*stop_finder : nullptr};
     return problem.goals_before.empty() ? search_alone(problem, model, checks, options, attempts)
-                                        : search_in_turn(problem, model, checks, options, min_round, attempts);
+                                        : search_in_turn(problem, model, checks, options, effort, attempts);
 }
 
 StopCondition end_of_last_flight(const std::stop_token& stop) {

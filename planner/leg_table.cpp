@@ -11,8 +11,6 @@
 namespace downwash::planning {
 namespace {
 
-constexpr int most_failures = 2;
-
 /// The goals of every place: of the targets with their alternatives, and of the place to return to.
 std::vector<std::pair<Visit, Goal>> goals_at_places(const Problem& problem) {
     std::vector<std::pair<Visit, Goal>> goals;
@@ -122,7 +120,7 @@ void LegTable::bound_legs_from(std::size_t from) {
     for (std::size_t to = 0; to <= estimates_.outside(); ++to) {
         if (!is_leg(from, to)) {
             estimates_.leg(from, to) = to < estimates_.outside() ? LegCost{} : LegCost{0, 0};
-        } else if (!leg(from, to).is_known && leg(from, to).failures < most_failures) {
+        } else if (!leg(from, to).is_known && !is_closed(leg(from, to))) {
             estimates_.leg(from, to) = bounds_[to]->from(at);
         }
     }
@@ -165,12 +163,12 @@ bool LegTable::is_known(std::size_t from, std::size_t to) const {
     return !is_leg(from, to) || leg(from, to).is_known;
 }
 
-SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget) {
+SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget, double most_s) {
     LegState& state = leg(from, to);
     const Course* const before = from == estimates_.outside() ? &start_
                                  : places_[from].hover        ? &*places_[from].hover
                                                               : nullptr;
-    if (before == nullptr || state.failures >= most_failures) {
+    if (before == nullptr || is_closed(state)) {
         return {};
     }
     Place& place = places_[to];
@@ -181,7 +179,7 @@ SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget&
     const std::size_t legs = legs_.size();
     part.planner.seed += static_cast<std::uint32_t>((pass_ + static_cast<std::uint32_t>(state.failures)) * legs +
                                                     from * (estimates_.outside() + 1) + to);
-    const SearchBudget mine = budget.part(std::ldexp(1.0, state.failures));
+    const SearchBudget mine = budget.part(std::ldexp(1.0, state.failures)).within_s(most_s);
     mine.limit(part.planner);
     SolveOptions options = options_;
     options.keep_tree = false;
@@ -189,11 +187,12 @@ SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget&
     options.on_plan = nullptr;
     const SearchResult result = search_goal(part, part, model_, *before, {}, options);
     const Found& found = result.found;
-    if (found.status != Status::solved) {
+    const bool is_unfinished = found.obstruction && found.obstruction->cause == unfinished_flight && found.plan;
+    if (found.status != Status::solved && !is_unfinished) {
         if (std::isfinite(state.flown.cost)) {  // there is a flight of a pass before
             state.is_known = true;
             estimates_.leg(from, to) = state.flown;
-        } else if (!options_.stop.stop_requested() && ++state.failures == most_failures) {
+        } else if (!options_.stop.stop_requested() && ++state.failures >= most_failures_) {
             estimates_.leg(from, to) = {};
         }
         return result.record;
@@ -222,14 +221,36 @@ SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget&
 }
 
 void LegTable::give_up(std::size_t from, std::size_t to) {
-    leg(from, to) = {false, most_failures, {}};
+    leg(from, to) = {false, 0, true, {}};
     estimates_.leg(from, to) = {};
+}
+
+void LegTable::put_off(std::size_t to) {
+    for (std::size_t from = 0; from <= estimates_.outside(); ++from) {
+        LegState& state = leg(from, to);
+        if (is_leg(from, to) && !std::isfinite(state.flown.cost)) {
+            state.failures = std::max(state.failures, most_failures_);
+            estimates_.leg(from, to) = {};
+        }
+    }
+}
+
+bool LegTable::search_on() {
+    const bool is_any = std::ranges::any_of(
+        legs_, [this](const LegState& state) { return !state.is_given_up && state.failures >= most_failures_; });
+    if (is_any) {
+        ++most_failures_;
+        for (std::size_t from = 0; from <= estimates_.outside(); ++from) {
+            bound_legs_from(from);
+        }
+    }
+    return is_any;
 }
 
 bool LegTable::is_out_of_reach(std::size_t target) const {
     for (std::size_t to = 0; to < estimates_.outside(); ++to) {
         for (std::size_t from = 0; from <= estimates_.outside() && places_[to].visit.target == target; ++from) {
-            if (is_leg(from, to) && leg(from, to).failures < most_failures) {
+            if (is_leg(from, to) && !is_closed(leg(from, to))) {
                 return false;
             }
         }

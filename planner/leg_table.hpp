@@ -43,13 +43,18 @@ class DOWNWASH_EXPORT LegTable {
 
     /// Searches for a flight along a leg in the nominal world. The vehicle starts as it hovers after the first leg to
     /// the place where this leg begins; without such a leg nothing is searched. After two failed searches the leg
-    /// counts as infinite.
-    /// @param budget of the search, doubled for each one that failed before
+    /// counts as infinite. Where the time is over before the direct flight of a plan, the planner's own cost counts.
+    /// @param budget of the search, doubled for each one that failed before   @param most_s it takes no more time [s]
     /// @return the work of the search; whether there is a flight, is_known() tells
-    SearchRecord fly(std::size_t from, std::size_t to, const SearchBudget& budget);
+    SearchRecord fly(std::size_t from, std::size_t to, const SearchBudget& budget, double most_s);
+
+    /// Allows one more search for each leg that counts as infinite. @return whether there is one
+    bool search_on();
 
     /// A flight along this leg was tried in vain from where others ended.
     void give_up(std::size_t from, std::size_t to);
+    /// Legs to a place that were not flown yet count as infinite until search_on(): the ways to it take long to find.
+    void put_off(std::size_t to);
 
     [[nodiscard]] Visit visit_at(std::size_t place) const { return places_[place].visit; }
     /// Whether no leg to a target can be flown.
@@ -65,6 +70,7 @@ class DOWNWASH_EXPORT LegTable {
     struct LegState {
         bool is_known = false;  ///< whether the leg is known in this pass
         int failures = 0;
+        bool is_given_up = false;
         LegCost flown = {};  ///< the cheapest flight of all passes; infinite without one
     };
     class Bounds;
@@ -76,6 +82,10 @@ class DOWNWASH_EXPORT LegTable {
         return legs_[from * (estimates_.outside() + 1) + to];
     }
     [[nodiscard]] bool is_leg(std::size_t from, std::size_t to) const;
+    /// Whether no further search for a leg is made.
+    [[nodiscard]] bool is_closed(const LegState& state) const {
+        return state.is_given_up || state.failures >= most_failures_;
+    }
     void bound_legs_from(std::size_t from);
     /// The cheapest flights, and of legs without one their estimates or another cost.
     [[nodiscard]] LegCosts costs_or(const std::optional<LegCost>& other) const;
@@ -89,6 +99,7 @@ class DOWNWASH_EXPORT LegTable {
     std::vector<LegState> legs_;
     LegCosts estimates_;
     std::uint64_t legs_flown_ = 0;
+    int most_failures_ = 2;
     std::uint32_t pass_ = 0;  ///< number of the pass; in each one the searches draw other samples
 };
 

@@ -15,7 +15,8 @@ bool is_order(const PlaceOrder& order) {
 SearchRecord OrderComparison::compare(const SearchBudget& budget) {
     const auto targets = static_cast<double>(table_.estimates().targets());
     const double legs = std::min(targets * (targets + 1), 6 * (targets + 1));
-    SearchBudget slice = budget.part(1 / legs);
+    constexpr double least_s = 0.1;  // of less nobody learns whether there is a way
+    SearchBudget slice = budget.part(1 / legs).at_least_s(least_s);
     Work work{budget, {}};
     for (;;) {
         const SearchBudget before = work.left;
@@ -64,7 +65,7 @@ bool OrderComparison::fly_missing_legs(const PlaceOrder& order, const SearchBudg
         if (!table_.is_known(from, to)) {
             was_missing = true;
             const Stopwatch clock;
-            SearchRecord spent = table_.fly(from, to, slice.at_most(work.left));
+            SearchRecord spent = table_.fly(from, to, slice.at_most(work.left), work.left.time_s());
             add_work(work.done, spent);
             spent.wall_s = clock.seconds();
             work.left.spend(spent);

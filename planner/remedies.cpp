@@ -8,6 +8,7 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/planner/stopwatch.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash {
@@ -141,8 +142,10 @@ Remedy tried(const Change& change, Problem problem, SolveOptions options) {
 
 std::vector<Remedy> try_remedies(const Problem& problem, const SolveOptions& options, double limit_s,
                                  const std::function<void(const Remedy&)>& on_tried) {
+    constexpr double most_over_one_goal = 1.5;
+    double left_s = most_over_one_goal * limit_s * static_cast<double>(std::size(changes));
+    const double longest_s = limit_s * static_cast<double>(goals_of(problem).size());
     Problem limited = problem;
-    limited.planner.time_limit_s = limit_s * static_cast<double>(goals_of(problem).size());
     SolveOptions until_first = options;
     until_first.stop_at_first_solution = true;
     until_first.keep_tree = false;
@@ -151,7 +154,11 @@ std::vector<Remedy> try_remedies(const Problem& problem, const SolveOptions& opt
         if (options.stop.stop_requested()) {
             break;
         }
+        const planning::Stopwatch clock;
+        limited.planner.time_limit_s =
+            std::min(longest_s, left_s / static_cast<double>(std::size(changes) - remedies.size()));
         remedies.push_back(tried(change, limited, until_first));
+        left_s -= clock.seconds();
         if (on_tried) {
             on_tried(remedies.back());
         }

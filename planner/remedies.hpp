@@ -25,7 +25,8 @@ struct Remedy {
 /// Tries what may help where a search found no certified plan: another place or tolerance of the goal, a larger margin,
 /// slower motion, a stiffer controller, and all uncertainties halved. Each change is tried alone; its search ends at
 /// the first certified plan. The result does not say that nothing else would help.
-/// @param limit_s wall time of each search per goal [s], > 0; a limit of iterations stays
+/// @param limit_s wall time of each search per goal [s], > 0; a limit of iterations stays. Together the searches take
+/// no more than one and a half times what they may for one goal.
 /// @param on_tried called after each
 /// @pre the problem has an uncertainty
 /// @return in the order in which they were tried; fewer than all when options.stop was requested

@@ -61,6 +61,18 @@ class SearchBudget {
         return less;
     }
 
+    /// This budget, but at least so many seconds; one of iterations stays.
+    [[nodiscard]] SearchBudget at_least_s(double least_s) const {
+        SearchBudget more = *this;
+        if (!iterations_) {
+            more.time_s_ = std::max(time_s_, least_s);
+        }
+        return more;
+    }
+
+    /// Time that is left [s]; infinite without a limit of it.
+    [[nodiscard]] double time_s() const { return time_s_; }
+
     /// What part of this budget some work took; at most 1.
     [[nodiscard]] double share_of(const SearchRecord& work) const {
         const double share = iterations_ ? static_cast<double>(work.iterations) / static_cast<double>(*iterations_)
@@ -118,6 +130,7 @@ inline void add_work(SearchRecord& sum, const SearchRecord& part) {
     sum.candidates.checked += part.candidates.checked;
     sum.candidates.failed_execution += part.candidates.failed_execution;
     sum.candidates.failed_certificate += part.candidates.failed_certificate;
+    sum.candidates.unfinished += part.candidates.unfinished;
 }
 
 /// Notes when a part of a search found its first plans, unless one before did.

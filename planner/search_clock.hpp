@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <optional>
@@ -16,10 +17,12 @@ namespace downwash::planning {
 /// What every search has in common: its limit of time, its record, and whom it tells.
 class SearchClock {
  public:
-    SearchClock(const PlannerSettings& settings, const SolveOptions& options)
+    /// @param check_time_s how long after the beginning a check of a plan may end, if that is more than the limit [s]
+    SearchClock(const PlannerSettings& settings, const SolveOptions& options, double check_time_s = 0)
         : options_(options), confidence_(settings.confidence) {
         if (settings.time_limit_s || !settings.max_iterations) {
             limit_s_ = settings.time_limit_s.value_or(default_time_limit_s);
+            check_limit_s_ = std::max(*limit_s_, check_time_s);
         }
     }
 
@@ -30,13 +33,9 @@ class SearchClock {
 
     /// Whether time, the caller or a first solution ends the search. Long work asks it all the time, from any thread:
     /// solve()'s own tells the caller how the search goes.
-    [[nodiscard]] bool is_over() {
-        if (std::this_thread::get_id() == thread_) {
-            report();
-        }
-        return options_.stop.stop_requested() || (limit_s_ && clock_.seconds() >= *limit_s_) ||
-               (options_.stop_at_first_solution && !record.improvements.empty());
-    }
+    [[nodiscard]] bool is_over() { return is_over_at(limit_s_); }
+    /// The same for a check of a plan that has begun.
+    [[nodiscard]] bool is_over_for_checks() { return is_over_at(check_limit_s_); }
 
     /// The planner's own model has accepted a plan.
     void found_first(double at_s) {
@@ -68,6 +67,14 @@ class SearchClock {
     }
 
  private:
+    [[nodiscard]] bool is_over_at(const std::optional<double>& limit_s) {
+        if (std::this_thread::get_id() == thread_) {
+            report();
+        }
+        return options_.stop.stop_requested() || (limit_s && clock_.seconds() >= *limit_s) ||
+               (options_.stop_at_first_solution && !record.improvements.empty());
+    }
+
     /// Tells the caller how the search goes, ten times a second.
     void report() {
         constexpr double period_s = 0.1;
@@ -87,7 +94,7 @@ class SearchClock {
     const SolveOptions& options_;
     double confidence_;
     Stopwatch clock_;
-    std::optional<double> limit_s_;
+    std::optional<double> limit_s_, check_limit_s_;
     Progress progress_;  ///< as reported last
     std::atomic<bool> is_certifying_ = false;
     std::atomic<std::uint64_t> certified_in_ = 0, failed_in_ = 0;

@@ -17,6 +17,9 @@ struct SearchResult {
     /// The goal before, from 0, the way to which has to be searched anew: its flights fail most often in the worlds of
     /// certificates, so that no way from there helps. Of a search for the way to one of several goals.
     std::optional<std::size_t> weak_goal = {};
+    /// The goal, from 0, for which all searches together were in vain for so long that the sequence ended before its
+    /// limits. Of a search for several goals.
+    std::optional<std::size_t> hard_goal = {};
 };
 
 }  // namespace downwash::planning

@@ -35,6 +35,28 @@ planning::DirectFlight flown(const Problem& problem, const FlightModel& model, c
                                   problem.energy_budget_j, planning::end_of_last_flight(options.stop));
 }
 
+/// A plan whose direct flight the end of the search cut off counts, if that flight is good after all and nothing else
+/// was asked of it.
+void count_if_good(const Problem& problem, Solution& solution) {
+    const bool was_cut_off = solution.obstruction && solution.obstruction->cause == unfinished_flight;
+    const bool is_certified = problem.uncertainty && problem.planner.certify;
+    const bool is_whole =
+        !solution.order || std::ranges::none_of(solution.order->left_out, [](const LeftOutTarget& each) {
+            return each.reason == LeftOutReason::no_flight;
+        });
+    if (!was_cut_off || is_certified || !is_whole ||
+        !planning::is_good(*solution.execution, problem.planner.safety_margin_m)) {
+        return;
+    }
+    solution.status = Status::solved;
+    solution.obstruction.reset();
+    solution.missed_goal.reset();
+    solution.nearest_approach_m.reset();
+    SearchRecord& record = solution.planning;
+    record.improvements.push_back(
+        {record.wall_s, record.iterations, solution.cost, cost_of(*solution.execution, problem.planner.objective)});
+}
+
 /// A solution that says how it was asked for, and nothing yet.
 Solution blank_solution(const PlannerSettings& settings, int threads) {
     Solution solution;
@@ -71,6 +93,7 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
             planning::DirectFlight flight = flown(visited, *plannable.model, *solution.plan, options);
             solution.execution = std::move(flight.execution);
             solution.flight_wall_s = flight.wall_s;
+            count_if_good(problem, solution);
         }
         if (solution.map) {
             solution.planning.map_wall_s = reading_wall_s + (solution.map->filling_s() - filling_before_s);

@@ -111,7 +111,8 @@ Json planning_json(const Found& found, const SearchRecord& record, std::span<con
             {"candidates",
              {{"checked", record.candidates.checked},
               {"failed_execution", record.candidates.failed_execution},
-              {"failed_certificate", record.candidates.failed_certificate}}},
+              {"failed_certificate", record.candidates.failed_certificate},
+              {"unfinished", record.candidates.unfinished}}},
             {"nearest_approach_m", number(found.nearest_approach_m)},
             {"obstruction", obstruction_json(found.obstruction, axes)},
             {"goal", found.missed_goal ? Json(*found.missed_goal) : Json()}};

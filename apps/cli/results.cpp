@@ -62,6 +62,11 @@ std::string missed_region(const Solution& solution) {
     return solution.missed_goal ? "the region of " + missed_goal(solution) : "the goal region";
 }
 
+/// Whether what a solution says of worlds is of the way to a goal before the last.
+bool is_about_part(const Solution& solution) {
+    return solution.missed_goal && solution.execution && *solution.missed_goal < solution.execution->goals.size();
+}
+
 std::string order_rows(const VisitOrder& order, bool has_plan, const std::optional<double>& energy_budget_j) {
     std::string visits;
     for (const Visit& visit : order.visits) {
@@ -137,16 +142,18 @@ std::filesystem::path default_folder(const Problem& problem) {
 
 namespace {
 
-std::string certificate_rows(const Certificate& certificate, const std::filesystem::path& folder) {
+/// @param is_of_part of a plan that ends before the last goal, which gets none
+std::string certificate_rows(const Certificate& certificate, bool is_of_part, const std::filesystem::path& folder) {
     const auto& probability = certificate.failure_probability;
+    const std::string name = is_of_part ? "screening" : "certificate";
+    const std::string outcome = is_of_part ? "not passed" : certificate.is_given ? "given" : "not given";
     if (certificate.worlds == 0) {
-        return table_row("certificate", "not given: the search ended before its first flights");
+        return table_row(name, outcome + ": the search ended before its first flights");
     }
     std::string text =
-        table_row("certificate",
-                  fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)",
-                              certificate.is_given ? "given" : "not given", certificate.failures, certificate.worlds,
-                              probability.low, probability.high, 100 * certificate.confidence)) +
+        table_row(name, fmt::format("{}: {} of {} worlds fail, failure probability {:.4f} to {:.4f} ({:g} %)", outcome,
+                                    certificate.failures, certificate.worlds, probability.low, probability.high,
+                                    100 * certificate.confidence)) +
         table_row("", "clearance " + millimetres(certificate.clearance_m.p01) + " or more in 99 % of the worlds, " +
                           millimetres(certificate.clearance_m.p50) + " in half of them");
     if (!certificate.causes.empty()) {
@@ -187,17 +194,28 @@ std::string verdict_on_search(const Solution& solution) {
                verdict_on_flight(*solution.execution);
     }
     if (solution.certificate && !solution.certificate->is_given) {
-        if (solution.certificate->failures <= CertificateTest::most_failures) {
-            return stopped + "A plan was found, but the search ended before it was certified.";
+        const Certificate& certificate = *solution.certificate;
+        const bool is_of_part = is_about_part(solution);
+        if (!has_failed(certificate)) {
+            const std::string what =
+                is_of_part
+                    ? fmt::format("A way to {} was found, but the search ended before it was flown in enough worlds",
+                                  missed_goal(solution))
+                    : "A plan was found, but the search ended before it was certified";
+            return stopped +
+                   fmt::format("{}: {} of {} worlds failed so far.", what, certificate.failures, certificate.worlds);
         }
-        return stopped + fmt::format("A plan was found, but in {} of {} worlds its flight fails: it is not certified.",
-                                     solution.certificate->failures, solution.certificate->worlds);
+        if (!is_of_part) {
+            return stopped +
+                   fmt::format("A plan was found, but in {} of {} worlds its flight fails: it is not certified.",
+                               certificate.failures, certificate.worlds);
+        }
     }
     if (solution.obstruction && solution.obstruction->cause == "certificate") {
         return stopped + fmt::format("No solution within the limits: every way to {} failed in too many worlds.",
                                      missed_goal(solution));
     }
-    if (solution.obstruction && solution.obstruction->cause == "unfinished_flight") {
+    if (solution.obstruction && solution.obstruction->cause == unfinished_flight) {
         return stopped + fmt::format("A way to {} was found, but the time was over before its flight was.",
                                      missed_goal(solution));
     }
@@ -240,7 +258,7 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
         text += flight_rows(goals_of(in_order(problem, solution.order)), solution, *solution.execution);
     }
     if (solution.certificate) {
-        text += certificate_rows(*solution.certificate, folder);
+        text += certificate_rows(*solution.certificate, is_about_part(solution), folder);
     }
     if (solution.safe_stops) {
         const double share = solution.safe_stops->share_without;
@@ -254,10 +272,12 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
                   record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
     text += table_row("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
     text += table_row("rejected", rejections(record));
-    if (const Candidates& plans = record.candidates; plans.failed_execution + plans.failed_certificate > 0) {
-        text +=
-            table_row("candidates", fmt::format("{} plans were checked: {} failed when executed, {} got no certificate",
-                                                plans.checked, plans.failed_execution, plans.failed_certificate));
+    if (const Candidates& plans = record.candidates;
+        plans.failed_execution + plans.failed_certificate + plans.unfinished > 0) {
+        text += table_row("candidates",
+                          fmt::format("{} plans were checked: {} failed when executed, {} got no certificate{}",
+                                      plans.checked, plans.failed_execution, plans.failed_certificate,
+                                      plans.unfinished > 0 ? fmt::format(", {} not in time", plans.unfinished) : ""));
     }
     if (record.first_certified_wall_s) {
         text += table_row("first certified", fmt::format("after {:.3f} s", *record.first_certified_wall_s));
@@ -272,15 +292,13 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
                           fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
                                       o.at[plane::x], o.at[plane::z], o.at[plane::arm] * degrees_per_radian,
                                       o.goal_distance_m, missed_region(solution)));
-        const bool is_unfinished =
-            solution.certificate && solution.certificate->failures <= CertificateTest::most_failures;
-        if (o.cause == "certificate" && is_unfinished) {
-            text += table_row(
-                "", "The time was over before the last plan was flown in enough worlds: give the search more.");
+        if (o.cause == unfinished_certificate) {
+            text +=
+                table_row("", "The time was over before this plan was flown in enough worlds: give the search more.");
         } else if (o.cause == "certificate") {
             text += table_row("", "The planner discarded every plan: in worlds that the search had not seen");
             text += table_row("", "each failed too often. `downwash solve --remedies` tries what would help.");
-        } else if (o.cause == "unfinished_flight") {
+        } else if (o.cause == unfinished_flight) {
             text +=
                 table_row("", "A flight with direct aerodynamics takes long in this scene: give the search more time.");
         } else if (o.cause == "direct_flight") {

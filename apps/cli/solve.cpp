@@ -19,6 +19,7 @@
 #include "downwash/planner/remedies.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/visit_order.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -53,10 +54,18 @@ std::string outcome_of(const Remedy& remedy) {
     return "not certified in time";
 }
 
+/// Whether all that stood between a plan and its certificate was time.
+bool lacked_time(const Solution& solution) {
+    return solution.obstruction &&
+           (solution.obstruction->cause == unfinished_flight || solution.obstruction->cause == unfinished_certificate);
+}
+
+/// @param problem with its goals in the order of the plan
 void print_remedies(const Problem& problem, SolveOptions options, bool is_quiet) {
     constexpr double limit_s = 5;
-    fmt::print("\nWhat would help, each tried by itself for up to {} s:\n\n",
-               limit_s * static_cast<double>(1 + problem.goals_before.size()));
+    const std::size_t goals = goals_of(problem).size();
+    fmt::print("\nWhat would help, each tried by itself for up to {} s{}:\n\n", limit_s * static_cast<double>(goals),
+               goals > 1 ? ", all together for up to a minute" : "");
     std::fflush(stdout);
     ProgressDisplay display(is_quiet);
     options.on_progress = [&](const Progress& progress) { display.show(progress); };
@@ -103,7 +112,12 @@ ExitCode run(const SolveArguments& given) {
                          ? record.solution_text
                          : summary_of(verdict_on_search(solution), read, solution, folder.path()) + input_rows(inputs));
     if (given.tries_remedies && read.uncertainty && solution.status != Status::solved && !solution.interrupted) {
-        print_remedies(read, options, given.is_quiet);
+        if (lacked_time(solution)) {
+            fmt::print("\nMore time would help (--time-limit); nothing else was tried, because no plan has failed.\n");
+        } else {
+            const bool visits_all = solution.order && solution.order->left_out.empty();
+            print_remedies(visits_all ? in_order(read, solution.order) : read, options, given.is_quiet);
+        }
     }
     return interruption.code() != ExitCode::done ? interruption.code() : exit_code_of(solution);
 }
@@ -136,10 +150,12 @@ void add_solve(Command program, Action& action) {
     command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
     add_no_cache(command, given.no_cache);
     add_quiet(command, given.is_quiet);
-    Option remedies = command.add_flag(
-        "--remedies", given.tries_remedies,
-        "where no plan gets its certificate, try what would help: another place or tolerance of the "
-        "goal, more margin, less speed, a stiffer controller, better knowledge; 5 s each, for each of several goals");
+    Option remedies =
+        command.add_flag("--remedies", given.tries_remedies,
+                         "where no plan gets its certificate, try what would help: another place or tolerance of the "
+                         "goal, more margin, less speed, a stiffer controller, better knowledge; 5 s each, for each of "
+                         "several goals, and "
+                         "a minute at most");
     add_json(command, given.as_json, "solution.json");
     command.option("--json").excludes(remedies);
 }

@@ -29,7 +29,8 @@ struct Improvement {
 
 /// What stood between a search and its goal: of the ways into the goal region that were rejected, holds included, the
 /// one that came nearest. `direct_flight`, if it had plans: where the flight of the one that was discarded last came
-/// nearest to an obstacle or, if that is not why, ended.
+/// nearest to an obstacle or, if that is not why, ended. `unfinished_flight` and `unfinished_certificate`: the search
+/// ended before it was known whether that plan counts.
 struct Obstruction {
     std::string cause;           ///< as in SearchRecord::rejected
     Configuration at;            ///< where it was rejected
@@ -40,7 +41,8 @@ struct Obstruction {
 struct Candidates {
     std::uint64_t checked = 0;
     std::uint64_t failed_execution = 0;    ///< discarded after their execution with direct aerodynamics
-    std::uint64_t failed_certificate = 0;  ///< discarded because they got no certificate
+    std::uint64_t failed_certificate = 0;  ///< discarded because they failed in too many worlds
+    std::uint64_t unfinished = 0;          ///< discarded because the search ended before their flights did
 };
 
 /// How a search went.

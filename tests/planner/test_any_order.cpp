@@ -1,11 +1,15 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <numeric>
 #include <set>
 
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
+#include "downwash/planner/leg_table.hpp"
+#include "downwash/planner/planner_model.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/problems/problem_model.hpp"
 
 using namespace downwash;
 
@@ -185,4 +189,112 @@ TEST_CASE("flights in worlds that take more energy than they may count against t
     REQUIRE(nominal.status == Status::solved);
     CHECK(nominal.order->visits.size() == 2);
     CHECK_FALSE(nominal.certificate);
+}
+
+namespace {
+
+/// Targets with a way back, in worlds, with plenty of energy and only time to end the search.
+Problem timed_targets() {
+    Problem problem = line_of_targets(Variant::mp_arm_ada);
+    problem.return_to = place(-4, 2);
+    problem.energy_budget_j = 1e6;
+    problem.planner.worlds = 2;
+    problem.planner.max_failure_probability = 0.2;
+    problem.uncertainty.emplace();
+    problem.uncertainty->mass_scale = Spread::of_sd(0.02);
+    problem.planner.max_iterations.reset();
+    problem.planner.time_limit_s = 1000;
+    return problem;
+}
+
+}  // namespace
+
+TEST_CASE("under a time limit the first flight through targets is that of the list in their order") {
+    const Problem problem = timed_targets();
+    SolveOptions first_only;
+    first_only.stop_at_first_solution = true;
+    const Solution any_order = solve(problem, first_only);
+    REQUIRE(any_order.status == Status::solved);
+    REQUIRE(any_order.order);
+    CHECK(any_order.order->visits.size() == 4);
+    REQUIRE(any_order.certificate);
+    CHECK(any_order.certificate->is_given);
+    Problem list = in_order(problem, any_order.order);
+    list.energy_budget_j.reset();
+    const Solution in_turn = solve(list, first_only);
+    REQUIRE(in_turn.status == Status::solved);
+    CHECK(test::same_bytes(*in_turn.plan, *any_order.plan));
+    CHECK(any_order.planning.iterations == in_turn.planning.iterations);
+    CHECK(any_order.certificate->worlds == in_turn.certificate->worlds);
+}
+
+TEST_CASE("a search for targets that the time ends in the middle of worlds says so, and in how many it was") {
+    Problem problem = timed_targets();
+    problem.planner.time_limit_s = 6;
+    problem.planner.max_failure_probability = 1e-5;  // which takes some 300,000 worlds for each target
+    const Solution solution = solve(problem);
+    CHECK(solution.status == Status::approximate);
+    CHECK(solution.planning.wall_s == Approx(6).margin(3));
+    REQUIRE(solution.obstruction);
+    CHECK(solution.obstruction->cause == unfinished_certificate);
+    CHECK(solution.missed_goal == std::optional<std::size_t>(1));
+    REQUIRE(solution.certificate);
+    CHECK_FALSE(solution.certificate->is_given);
+    CHECK(solution.certificate->worlds > 0);
+    CHECK_FALSE(has_failed(*solution.certificate));
+    CHECK(solution.planning.candidates.unfinished > 0);
+    CHECK(solution.planning.candidates.failed_certificate == 0);
+    REQUIRE(solution.order);
+    CHECK(solution.order->visits.size() == 4);
+    CHECK(solution.order->left_out.empty());
+}
+
+TEST_CASE("under a time limit a target behind a wall is left out, and the flight to the others is found") {
+    Problem problem = line_of_targets(Variant::mp_arm_da);
+    problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {3, 0, 2.5}));
+    problem.planner.max_iterations.reset();
+    problem.planner.time_limit_s = 8;
+    const Solution solution = solve(problem);
+    CHECK(solution.status == Status::approximate);
+    REQUIRE(solution.order->left_out.size() == 1);
+    CHECK(solution.order->left_out[0] == LeftOutTarget{0, LeftOutReason::no_flight, std::nullopt});
+    CHECK(solution.order->visits.size() == 3);
+    REQUIRE(solution.execution);
+    CHECK(solution.execution->outcome == Outcome::ok);
+    CHECK(solution.planning.wall_s > 7);  // the search does not end before its time
+}
+
+TEST_CASE("legs that were searched for in vain are put off, given up, or searched for again") {
+    Problem problem = line_of_targets(Variant::mp_arm_da);
+    problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {3, 0, 2.5}));  // before target 0
+    const std::shared_ptr<const FlightModel> flight = make_flight_model(problem);
+    const planning::PlannerModel model{problem.planner.variant, flight, nullptr};
+    const SolveOptions options;
+    planning::LegTable table(problem, model, options);
+    PlannerSettings settings = problem.planner;
+    settings.max_iterations = 8;
+    const planning::SearchBudget budget(settings);
+    const std::size_t outside = table.estimates().outside();
+    const double bound = table.estimates().leg(outside, 0).cost;
+    const auto cost = [&] { return table.estimates().leg(outside, 0).cost; };
+    CHECK_FALSE(table.search_on());
+    for (int search = 0; search < 2; ++search) {
+        CHECK(cost() == bound);
+        CHECK(table.fly(outside, 0, budget, 10).iterations > 0);
+    }
+    CHECK(std::isinf(cost()));
+    CHECK(table.fly(outside, 0, budget, 10).iterations == 0);
+    CHECK(table.search_on());
+    CHECK(cost() == bound);
+    CHECK(table.fly(outside, 0, budget, 10).iterations > 0);
+    CHECK(std::isinf(cost()));
+
+    CHECK(std::isfinite(table.estimates().leg(1, 3).cost));
+    table.put_off(3);
+    CHECK(std::isinf(table.estimates().leg(1, 3).cost));
+    CHECK(std::isinf(table.estimates().leg(outside, 3).cost));
+    table.give_up(outside, 0);
+    CHECK(table.search_on());
+    CHECK(std::isfinite(table.estimates().leg(1, 3).cost));
+    CHECK(std::isinf(cost()));  // it is given up
 }

@@ -137,7 +137,7 @@ TEST_CASE("of two ways through several goals the one that can be left for more o
     double first_cost = 0;
     int ways = 0;
     const SolveOptions options;
-    planning::GoalSequence sequence(problem, model, options, 0, 0);
+    planning::GoalSequence sequence(problem, model, options, {}, 0);
     while (const auto part = sequence.next()) {
         planning::SearchResult result =
             planning::search_goal(part->problem, problem, model, *part->before, {}, part->options);

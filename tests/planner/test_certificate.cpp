@@ -338,7 +338,7 @@ TEST_CASE("A search whose certificates fail on the way to an earlier goal names 
     const planning::PlannerModel model{problem.planner.variant, flight_model, flight_model->make_map(problem.bounds)};
     planning::ProblemWorlds worlds(problem, model, options);
     std::vector<std::optional<std::size_t>> named;
-    planning::GoalSequence sequence(problem, model, options, 0, 0);
+    planning::GoalSequence sequence(problem, model, options, {}, 0);
     while (const auto part = sequence.next()) {
         // The way to the first goal is good in the nominal world, and it stays so.
         planning::ProblemWorlds* survived = part->before->goals.empty() ? nullptr : &worlds;

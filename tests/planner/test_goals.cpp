@@ -8,6 +8,7 @@
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/goal_sequence.hpp"
+#include "downwash/planner/search_clock.hpp"
 #include "downwash/planner/solve.hpp"
 
 using namespace downwash;
@@ -74,7 +75,7 @@ struct ScriptedTour {
         const planning::PlannerModel model{problem.planner.variant, make_flight_model(problem), nullptr};
         SolveOptions options;
         options.stop_at_first_solution = true;
-        planning::GoalSequence sequence(problem, model, options, 0, 0);
+        planning::GoalSequence sequence(problem, model, options, {}, 0);
         while (const auto part = sequence.next()) {
             const PartOutcome outcome = goals.size() < script.size() ? script[goals.size()] : PartOutcome::found;
             goals.push_back(part->before->goals.size());
@@ -119,6 +120,84 @@ TEST_CASE("a part of a tour that takes too long is searched anew, the second tim
     CHECK(tour.goals == std::vector<std::size_t>{0, 1, 1, 0, 1, 2});
     CHECK(tour.found.status == Status::solved);
     CHECK(tour.record.iterations == 10 + 100 + 200 + 30);
+}
+
+TEST_CASE("the check of a plan may take what is left of a first round, the search for it a share") {
+    Problem problem = tour(Variant::mp_arm);
+    problem.aero.enabled = false;
+    problem.planner.time_limit_s = 12;
+    for (const bool has_iterations : {false, true}) {
+        CAPTURE(has_iterations);
+        problem.planner.max_iterations = has_iterations ? std::optional<std::uint64_t>(100) : std::nullopt;
+        const planning::PlannerModel model{problem.planner.variant, make_flight_model(problem), nullptr};
+        const SolveOptions options;
+        planning::GoalSequence sequence(problem, model, options, {}, 0);
+        const auto first = sequence.next();
+        REQUIRE(first);
+        CHECK(first->check_time_s == 12);
+        CHECK(*first->problem.planner.time_limit_s == Approx(has_iterations ? 12 : 1));
+        planning::SearchResult result;
+        result.record.wall_s = 5;  // five times its share, and it has found what it searched for
+        result.record.iterations = 10;
+        result.found.status = Status::solved;
+        result.found.plan =
+            Plan{{{0, at_rest(first->problem.start.at)}, {500, at_rest({0, 3, 0})}}, model.flight->tick().tick_s};
+        sequence.add(std::move(result));
+        const auto second = sequence.next();
+        REQUIRE(second);
+        CHECK(second->before->goals.size() == 1);
+        CHECK(second->check_time_s == Approx(7));
+    }
+}
+
+TEST_CASE("a check that has begun ends later than its search, where it may") {
+    PlannerSettings settings;
+    settings.time_limit_s = 1e-9;
+    settings.max_iterations.reset();
+    const SolveOptions options;
+    planning::SearchClock patient(settings, options, 1000), other(settings, options);
+    CHECK(patient.is_over());
+    CHECK_FALSE(patient.is_over_for_checks());
+    CHECK(other.is_over());
+    CHECK(other.is_over_for_checks());
+}
+
+TEST_CASE("a tour in which the way to one goal takes longer than one has patience for ends there") {
+    Problem problem = tour(Variant::mp_arm);
+    problem.aero.enabled = false;
+    problem.planner.max_iterations.reset();
+    problem.planner.time_limit_s = 60;
+    const planning::PlannerModel model{problem.planner.variant, make_flight_model(problem), nullptr};
+    const SolveOptions options;
+    for (const double patience_s : {7.0, 1000.0}) {
+        CAPTURE(patience_s);
+        planning::SequenceEffort effort;
+        effort.patience_s = patience_s;
+        planning::GoalSequence sequence(problem, model, options, effort, 0);
+        std::size_t to_second = 0;
+        while (const auto part = sequence.next()) {
+            planning::SearchResult result;
+            result.record.wall_s = 1e-3;
+            const bool is_second = part->before->goals.size() == 1;
+            to_second += is_second ? 1 : 0;
+            if (!is_second) {
+                result.found.status = Status::solved;
+                result.found.plan = Plan{{{0, at_rest(part->problem.start.at)}, {500, at_rest({0, 3, 0})}},
+                                         model.flight->tick().tick_s};
+            }
+            sequence.add(std::move(result));
+        }
+        const planning::SearchResult whole = std::move(sequence).result();
+        CHECK(whole.found.status == Status::approximate);
+        CHECK(whole.found.missed_goal == std::optional<std::size_t>(2));
+        if (patience_s < 60) {
+            CHECK(whole.hard_goal == std::optional<std::size_t>(1));
+            CHECK(to_second == 2);  // searches of 2.5 and 5 s
+        } else {
+            CHECK_FALSE(whole.hard_goal);
+            CHECK(to_second > 2);
+        }
+    }
 }
 
 TEST_CASE("a tour with a part that gives up at once comes to an end") {

@@ -36,6 +36,13 @@ function world_text({world, lateral_m}) {
     return world ? `, in world ${world.index} of seed ${world.seed}${beside}` : "";
 }
 
+/** Whether what a solution says of worlds is about the way to a goal before the last. */
+function is_of_part({solution: {planning, certificate, execution}}) {
+    const cause = planning?.obstruction?.cause;
+    const goals = execution?.goals?.length ?? 0;
+    return (cause === "certificate" || cause === "unfinished_certificate") && (!certificate || planning.goal < goals);
+}
+
 /** What blocked a search without a plan. */
 function blocked_lines(model) {
     const {solution, outcome} = model;
@@ -43,7 +50,8 @@ function blocked_lines(model) {
     const nearest = planning?.nearest_approach_m, stop = planning?.obstruction;
     const goal = planning?.goal ? numbered_goal_name(model, planning.goal) : "the goal";
     const region = planning?.goal ? `the region of ${goal}` : "the goal region";
-    const is_screened = stop?.cause === "certificate" && !certificate;  // a part of a way through several goals
+    const is_screened = is_of_part(model);
+    const failed = stop?.cause === "certificate";
     const lines = [];
     if (interrupted) {
         lines.push("The search was interrupted.");
@@ -53,8 +61,9 @@ function blocked_lines(model) {
     }
     if (status === "approximate") {
         const flight = execution ? ` Its execution ${outcome_text(outcome)}.` : "";
-        const shown = certificate ? "a plan that reaches the goal without a certificate" :
-            is_screened           ? `a way to ${goal} that fails too often in other worlds` :
+        const shown = is_screened && failed ? `a way to ${goal} that fails too often in other worlds` :
+            is_screened           ? `a way to ${goal} that was not flown in enough worlds` :
+            certificate           ? "a plan that reaches the goal without a certificate" :
                                     `an approximate plan: it ends near ${goal}`;
         lines.push(`The page shows ${shown}, which counts as no solution.${is_screened ? "" : flight}`);
     }
@@ -69,6 +78,8 @@ function blocked_lines(model) {
     } else if (stop?.cause === "unfinished_flight") {
         lines.push(
             `The planner found a way to ${goal}, but the time was over before its flight with direct aerodynamics was.`);
+    } else if (stop?.cause === "unfinished_certificate") {
+        lines.push(`The planner found a way to ${goal}, but the time was over before it was flown in enough worlds.`);
     } else if (stop?.cause === "certificate") {
         lines.push(
             `The planner discarded every plan to ${goal}: in worlds that the search had not seen, each failed too often.`);
@@ -97,7 +108,7 @@ export function verdict_of(model) {
         return {kind: "none", mark: "○", title: "Not planned yet", lines: [line]};
     }
     if (solution.status !== "solved") {
-        const title = solution.status === "approximate" && solution.certificate ?
+        const title = solution.status === "approximate" && solution.certificate && !is_of_part(model) ?
             "A plan was found, but it is not certified" :
             "No plan within the limits";
         return {kind: "none", mark: "∅", title, lines: blocked_lines(model)};

@@ -12,6 +12,7 @@ export const causes = {
     saturation: "exceeds a limit of the actuators",
     too_long: "takes too long",
     tracking: "does not follow its reference",
+    unfinished_certificate: "was not flown in enough worlds in time",
     unfinished_flight: "was not executed in time",
     unstable: "becomes unstable",
 };
