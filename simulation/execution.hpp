@@ -81,9 +81,12 @@ struct Execution : FlightSums {
     double duration_s = 0;
     double clearance_integral = 0;  ///< see SegmentFlight
     double max_tracking_error_m = 0;
-    double max_saturation = 0;         ///< greatest demand over its limit; above 1 something was clipped
-    double goal_error_m = 0;           ///< the worst of all goals
-    std::vector<GoalVisit> goals;      ///< one for each, in their order
+    double max_saturation = 0;     ///< greatest demand over its limit; above 1 something was clipped
+    double goal_error_m = 0;       ///< the worst of all goals
+    std::vector<GoalVisit> goals;  ///< one for each, in their order
+    /// Share of the control ticks at which a part of the robot is in space that no sensor saw and that counts as free
+    /// (Scene::unseen_space()); empty if the scene has none.
+    std::optional<double> unseen_share;
     std::optional<TouchRecord> touch;  ///< touch of the last goal, where it asks for one and the flight came to it
     int rotor_count = 0;
     bool has_rotor_lag = false;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -75,6 +76,7 @@ struct PlacedGeometry {
     GeometryFacts facts;
 
     [[nodiscard]] const Mesh* mesh() const { return std::get_if<Mesh>(&obstacle.shape); }
+    [[nodiscard]] const Octomap* octomap() const { return std::get_if<Octomap>(&obstacle.shape); }
     [[nodiscard]] const char* surface() const {
         return facts.surface.solid_pieces == facts.surface.pieces ? "solid"
                : facts.surface.solid_pieces == 0                  ? "sheet"
@@ -92,6 +94,18 @@ std::vector<PlacedGeometry> geometry_of(const PlannableProblem& problem) {
     return all;
 }
 
+/// What of an octree no sensor has seen; nothing of a mesh, and of an octree whose file cannot tell.
+std::string unseen_text(const PlacedGeometry& geometry) {
+    const Octomap* octomap = geometry.octomap();
+    if (octomap == nullptr) {
+        return "";
+    }
+    const std::string_view unknown = name_of(octomap->unknown);
+    return octomap->tree->has_free_leaf
+               ? fmt::format(", {:.1f} % of its box unseen ({})", 100 * octomap->tree->unseen_share, unknown)
+               : fmt::format(", no free leaves (unknown: {})", unknown);
+}
+
 std::string text_of(const PlacedGeometry& geometry) {
     const GeometryFacts& facts = geometry.facts;
     const SurfaceFacts& surface = facts.surface;
@@ -99,11 +113,11 @@ std::string text_of(const PlacedGeometry& geometry) {
     const auto range = [&extent](std::size_t k) {
         return fmt::format("{} to {} m", to_text(extent.low_m[k], 6), to_text(extent.high_m[k], 6));
     };
-    return fmt::format("  {}: {} of {} {}, {} piece{}, {}, x {}, y {}, z {} in the world\n",
+    return fmt::format("  {}: {} of {} {}, {} piece{}, {}{}, x {}, y {}, z {} in the world\n",
                        geometry.obstacle.name.empty() ? geometry.key : excerpt(geometry.obstacle.name),
                        geometry.mesh() ? "mesh" : "octree", facts.element_count,
                        geometry.mesh() ? "triangles" : "cubes", surface.pieces, surface.pieces == 1 ? "" : "s",
-                       geometry.surface(), range(0), range(1), range(2));
+                       geometry.surface(), unseen_text(geometry), range(0), range(1), range(2));
 }
 
 Json json_of(const PlacedGeometry& geometry, const std::string& path) {
@@ -122,6 +136,10 @@ Json json_of(const PlacedGeometry& geometry, const std::string& path) {
               {"solid_pieces", surface.solid_pieces},
               {"open_edges", surface.open_edges}};
     json["open_place"] = surface.open_edges > 0 ? Json(surface.open_place) : Json();
+    if (const Octomap* octomap = geometry.octomap()) {
+        json["unknown"] = name_of(octomap->unknown);
+        json["unseen_share"] = octomap->tree->has_free_leaf ? Json(octomap->tree->unseen_share) : Json();
+    }
     return json;
 }
 
