@@ -16,6 +16,7 @@
 #include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/planner/remedies.hpp"
+#include "downwash/problems/cut_off_goals.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
 
@@ -49,7 +50,11 @@ std::string outcome_of(const Remedy& remedy) {
         return fmt::format("not certified: {} of {} worlds fail", remedy.certificate->failures,
                            remedy.certificate->worlds);
     }
-    return "not certified in time";
+    if (!remedy.closed_by.empty()) {
+        return "no way in this plane: closed by " + quoted_labels(remedy.closed_by);
+    }
+    return "not certified in time" +
+           (remedy.stopped_by.empty() ? "" : "; collisions with " + most_stopping(remedy.stopped_by));
 }
 
 void print_remedies(const Problem& problem, SolveOptions options, bool is_quiet) {
@@ -91,6 +96,9 @@ ExitCode run(const SolveArguments& given) {
         display.say(announcement(read));
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = downwash::solve(plannable, options);
+    }
+    if (const auto warning = unseen_warning(solution, given.problem)) {
+        noting(warnings, given.is_quiet)(*warning);
     }
     const RunRecord record = folder.write(read, given.problem, warnings, solution);
     // In free air there is no map. Without a map and a search there is nothing to be shown yet.
