@@ -63,8 +63,8 @@ void add_shape(Description& description, const Mesh& mesh) {
 }
 
 void add_shape(Description& description, const Octomap& octomap) {
-    const auto& [file, tree] = octomap;
-    description.add("octomap").add(tree ? digest_of(*tree) : "none");
+    const auto& [file, tree, unknown] = octomap;  // the digest tells `unknown`
+    description.add("octomap").add(tree ? digest_of(octomap) : "none");
 }
 
 void add_scene(Description& description, const Scene& scene) {

@@ -81,11 +81,11 @@ struct ShapeReader {
         add(std::move(model), pose);
     }
     void operator()(const Octomap& octomap) const {
-        for (const OccupiedCube& cube : octomap.tree->cubes) {
+        for_each_solid_box(octomap, [this](const LocalBox& box) {
             Pose placed = pose;
-            placed.translate(vector_of(cube.center_local_m));
-            add(std::make_shared<fcl::Boxd>(cube.side_m, cube.side_m, cube.side_m), placed);
-        }
+            placed.translate(vector_of(box.center_m));
+            add(std::make_shared<fcl::Boxd>(vector_of(box.size_m)), placed);
+        });
     }
 };
 

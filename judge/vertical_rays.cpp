@@ -155,11 +155,11 @@ struct PartsOf {
         }
     }
     void operator()(const Octomap& octomap) const {
-        for (const OccupiedCube& cube : octomap.tree->cubes) {
+        for_each_solid_box(octomap, [this](const LocalBox& box) {
             Eigen::Isometry3d placed = pose;
-            placed.translate(vector_of(cube.center_local_m));
-            add(Solid::Kind::box, placed, Vector3d::Constant(0.5 * cube.side_m));
-        }
+            placed.translate(vector_of(box.center_m));
+            add(Solid::Kind::box, placed, 0.5 * vector_of(box.size_m));
+        });
     }
 
     void add(Solid::Kind kind, const Eigen::Isometry3d& at, const Vector3d& half_m) const {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "downwash/planner/braking.hpp"
+#include "downwash/search/obstacle_labels.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -17,7 +18,7 @@ Obstruction obstruction_of(const Certificate& certificate, const Plan& plan) {
 }
 
 /// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
-Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
+Obstruction obstruction_of(const Execution& flight, const SearchTask& task) {
     if (flight.outcome == Outcome::over_budget) {
         return {std::string(name_of(flight.outcome)), configuration_of(flight.rows.back().q), 0};
     }
@@ -26,7 +27,9 @@ Obstruction obstruction_of(const Execution& flight, const SearchSpace& space) {
                          [](const FlightRow& a, const FlightRow& b) { return a.clearance_m < b.clearance_m; });
     const bool is_too_near = flight.outcome == Outcome::ok || flight.outcome == Outcome::collision;
     const double(&q)[4] = (is_too_near ? *nearest : flight.rows.back()).q;
-    return {"direct_flight", configuration_of(q), space.goal_distance_m(configuration_of(q))};
+    const bool is_by_obstacle = is_too_near || flight.outcome == Outcome::left_flyable_area;
+    return {"direct_flight", configuration_of(q), task.space.goal_distance_m(configuration_of(q)),
+            is_by_obstacle ? obstacles_near(task.model, pose_of(q)) : std::vector<std::string>()};
 }
 
 }  // namespace
@@ -124,7 +127,7 @@ bool CandidateCheck::flies_well(const Plan& plan, double cost) {
         discarded_ = Obstruction{std::string(unfinished_flight), plan.last(), 0};
         unfinished_ = {plan, cost};
     } else if (is_bad) {
-        discarded_ = obstruction_of(flight_->execution, task_.space);
+        discarded_ = obstruction_of(flight_->execution, task_);
     }
     return !is_bad;
 }
@@ -219,6 +222,7 @@ SearchResult CandidateCheck::result(std::uint64_t iterations, const FlightStatis
     }
     record.states_checked = statistics.states_checked;
     record.rejected = statistics.rejected;
+    record.stopped_by = labelled(statistics.stopped_by, task_.model.scene());
     result_.record = std::move(record);
     result_.found.tree = std::move(tree);
     if (!has_plan()) {

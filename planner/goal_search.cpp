@@ -44,6 +44,7 @@ SearchResult search_lines(CandidateCheck& check, const SolveOptions& options) {
     statistics.states_checked = found.counts.states;
     statistics.rejected = no_rejections();
     statistics.rejected["collision"] = found.counts.rejected_collision;
+    statistics.stopped_by = found.counts.stopped_by;
     statistics.rejected["bounds"] = found.counts.rejected_bounds;
     statistics.rejected["arm_limits"] = found.counts.rejected_arm_limits;
     statistics.rejected["direct_flight"] = found.discarded;

@@ -129,6 +129,10 @@ Remedy tried(const Change& change, Problem problem, SolveOptions options) {
         const Solution solution = solve(problem, options);
         remedy.helps = solution.certificate && solution.certificate->is_given;
         remedy.certificate = solution.certificate;
+        if (solution.obstruction && solution.obstruction->cause == "closed_plane") {
+            remedy.closed_by = solution.obstruction->obstacles;
+        }
+        remedy.stopped_by = solution.planning.stopped_by;
         remedy.cost = solution.cost;
         remedy.wall_s = solution.planning.wall_s;
     } catch (const InputError& error) {

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,8 +15,11 @@ namespace downwash {
 
 /// A change of a problem for which a search found no certified plan, and what came of trying it.
 struct Remedy {
-    std::string change;  ///< change in words, for example "the goal 0.2 m lower"
-    std::string error;   ///< why the changed problem cannot be planned; empty if it can
+    std::string change;                  ///< change in words, for example "the goal 0.2 m lower"
+    std::string error;                   ///< why the changed problem cannot be planned; empty if it can
+    std::vector<std::string> closed_by;  ///< obstacles past which no way leads in the plane; see cut_off_goals()
+    /// Edges that collisions stopped, by obstacle; see SearchRecord.
+    std::map<std::string, std::uint64_t> stopped_by;
     bool helps = false;  ///< whether a plan got its certificate
     /// Certificate of that plan or, without one, of the plan that failed least.
     std::optional<Certificate> certificate;

@@ -127,6 +127,9 @@ inline void add_work(SearchRecord& sum, const SearchRecord& part) {
     for (const auto& [cause, count] : part.rejected) {
         sum.rejected[cause] += count;
     }
+    for (const auto& [obstacle, count] : part.stopped_by) {
+        sum.stopped_by[obstacle] += count;
+    }
     sum.candidates.checked += part.candidates.checked;
     sum.candidates.failed_execution += part.candidates.failed_execution;
     sum.candidates.failed_certificate += part.candidates.failed_certificate;

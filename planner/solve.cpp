@@ -1,8 +1,11 @@
 #include "downwash/planner/solve.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "downwash/aeromap/map_cache.hpp"
 #include "downwash/planner/any_order.hpp"
@@ -10,6 +13,9 @@
 #include "downwash/planner/goals_in_order.hpp"
 #include "downwash/planner/stopwatch.hpp"
 #include "downwash/planner/worlds.hpp"
+#include "downwash/problems/cut_off_goals.hpp"
+#include "downwash/search/planned_flights.hpp"
+#include "downwash/search/search_space.hpp"
 
 namespace downwash {
 
@@ -57,6 +63,37 @@ void count_if_good(const Problem& problem, Solution& solution) {
         {record.wall_s, record.iterations, solution.cost, cost_of(*solution.execution, problem.planner.objective)});
 }
 
+/// What is told of a problem with goals to which no way leads in the plane; nothing if there may be a plan.
+std::optional<planning::SearchResult> closed_plane(const Problem& problem, const FlightModel& model) {
+    const planning::Stopwatch clock;
+    const std::vector<CutOffGoal> cut_off = cut_off_goals(problem, model.scene());
+    if (!leave_no_plan(cut_off, problem)) {
+        return std::nullopt;
+    }
+    const CutOffGoal& first = cut_off.front();
+    std::vector<std::string> labels;
+    for (const std::size_t obstacle : first.obstacles) {
+        labels.push_back(label_of(problem.obstacles, obstacle));
+    }
+    planning::SearchResult result;
+    Found& found = result.found;
+    Problem towards_goal = problem;
+    towards_goal.goal = goals_of(problem)[first.goal];
+    const double away_m = planning::SearchSpace(towards_goal, model).goal_distance_m(problem.start.at);
+    found.obstruction = Obstruction{"closed_plane", problem.start.at, away_m, std::move(labels)};
+    if (!problem.targets.empty()) {
+        found.order.emplace();
+        for (std::size_t target = 0; target < problem.targets.size(); ++target) {
+            found.order->left_out.push_back({target, LeftOutReason::no_flight, std::nullopt});
+        }
+    } else if (!problem.goals_before.empty()) {
+        found.missed_goal = first.goal + 1;
+    }
+    result.record.rejected = planning::no_rejections();
+    result.record.wall_s = clock.seconds();
+    return result;
+}
+
 /// A solution that says how it was asked for, and nothing yet.
 Solution blank_solution(const PlannerSettings& settings, int threads) {
     Solution solution;
@@ -82,8 +119,13 @@ Solution solve_checked(const PlannableProblem& plannable, const SolveOptions& as
         const double filling_before_s = solution.map ? solution.map->filling_s() : 0;
         const double setup_wall_s = since_call.seconds();
         const planning::PlannerModel own(problem.planner.variant, plannable.model, solution.map);
-        planning::SearchResult result = problem.targets.empty() ? planning::search_in_order(problem, own, options)
-                                                                : planning::search_in_any_order(problem, own, options);
+        // A vehicle in the air that asks anew has a plan, and no time.
+        std::optional<planning::SearchResult> closed =
+            options.known_plan ? std::nullopt : closed_plane(problem, *plannable.model);
+        planning::SearchResult result = closed ? std::move(*closed)
+                                        : problem.targets.empty()
+                                            ? planning::search_in_order(problem, own, options)
+                                            : planning::search_in_any_order(problem, own, options);
         static_cast<Found&>(solution) = std::move(result.found);
         solution.planning = std::move(result.record);
         solution.planning.setup_wall_s = setup_wall_s;

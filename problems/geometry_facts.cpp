@@ -11,7 +11,7 @@ std::vector<GeometryFacts> geometry_facts(const Scene& scene) {
         if (const auto* mesh = std::get_if<Mesh>(&shape)) {
             all.push_back({i, mesh->surface->triangles.size(), scene.bounds(i), scene.facts(i)});
         } else if (const auto* octomap = std::get_if<Octomap>(&shape)) {
-            const std::size_t pieces = piece_count(*octomap->tree);
+            const std::size_t pieces = piece_count(*octomap);
             all.push_back({i, octomap->tree->cubes.size(), scene.bounds(i), {pieces, pieces, 0, {}}});
         }
     }

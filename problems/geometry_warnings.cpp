@@ -49,15 +49,15 @@ class BoxInPlane {
         }
     }
     void operator()(const Octomap& octomap) {
-        for (const OccupiedCube& cube : octomap.tree->cubes) {
+        for_each_solid_box(octomap, [this](const LocalBox& box) {
             for (unsigned corner = 0; corner < 8; ++corner) {
-                Vector3 p_m = cube.center_local_m;
+                Vector3 p_m = box.center_m;
                 for (unsigned axis = 0; axis < 3; ++axis) {
-                    p_m[axis] += (corner >> axis & 1U) != 0 ? cube.side_m / 2 : -cube.side_m / 2;
+                    p_m[axis] += (corner >> axis & 1U) != 0 ? box.size_m[axis] / 2 : -box.size_m[axis] / 2;
                 }
                 add(p_m);
             }
-        }
+        });
     }
     template <class Primitive>
     void operator()(const Primitive& /*not from a file*/) {}
@@ -216,6 +216,27 @@ void add_surface_warnings(const std::string& file, const TriangleMesh& surface, 
     }
 }
 
+/// What space that no sensor has seen counts as, where that is likely not meant.
+void add_unseen_warning(const Octomap& octomap, const std::string& key, std::vector<KeyError>& warnings) {
+    const OccupancyTree& tree = *octomap.tree;
+    const std::string file = "'" + octomap.file + "' ";
+    if (octomap.unknown == UnknownSpace::occupied) {
+        if (!tree.has_free_leaf && tree.unseen_share > 0) {
+            warnings.push_back({key, file +
+                                         "has no free leaf, so that `unknown: occupied` fills the whole bounding box "
+                                         "of its leaves; use `unknown: free` if it was not made from a sensor's rays"});
+        }
+        return;
+    }
+    if (tree.has_free_leaf && tree.unseen_share > 0) {
+        warnings.push_back(
+            {key, file + "has no leaf in " + rounded(100 * tree.unseen_share) +
+                      " % of the bounding box of its leaves: no sensor saw that space, and it counts as free; "
+                      "`unknown: occupied` makes it solid" +
+                      (tree.lists_unseen ? "" : ". It has too many pieces to count flights in it")});
+    }
+}
+
 }  // namespace
 
 std::vector<KeyError> geometry_warnings(const ProblemCheck& check) {
@@ -232,6 +253,9 @@ std::vector<KeyError> geometry_warnings(const ProblemCheck& check) {
             "environment.obstacles[" + std::to_string(i) + "]" + (mesh != nullptr ? ".mesh.file" : ".octomap.file");
         if (mesh != nullptr && told.insert(mesh->surface.get()).second) {
             add_surface_warnings(mesh->file, *mesh->surface, check.scene()->facts(i), key, warnings);
+        }
+        if (const auto* octomap = std::get_if<Octomap>(&obstacles[i].shape)) {
+            add_unseen_warning(*octomap, key, warnings);
         }
         if (!region) {
             region.emplace(check);

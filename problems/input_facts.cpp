@@ -1,14 +1,28 @@
 #include "downwash/problems/input_facts.hpp"
 
+#include <string>
 #include <variant>
 
 namespace downwash {
 namespace {
 
 GeometryInput geometry_input(const Obstacle& obstacle, const GeometryFacts& facts) {
-    const auto* mesh = std::get_if<Mesh>(&obstacle.shape);
-    return {"environment.obstacles[" + std::to_string(facts.obstacle) + "]", obstacle.name,
-            mesh != nullptr ? mesh->file : std::get<Octomap>(obstacle.shape).file, mesh != nullptr, facts};
+    GeometryInput input;
+    input.key = "environment.obstacles[" + std::to_string(facts.obstacle) + "]";
+    input.name = obstacle.name;
+    input.facts = facts;
+    if (const auto* mesh = std::get_if<Mesh>(&obstacle.shape)) {
+        input.is_mesh = true;
+        input.file = mesh->file;
+    } else {
+        const auto& octomap = std::get<Octomap>(obstacle.shape);
+        input.file = octomap.file;
+        input.unknown = octomap.unknown;
+        if (octomap.tree->has_free_leaf) {
+            input.unseen_share = octomap.tree->unseen_share;
+        }
+    }
+    return input;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,7 @@
 #include "downwash/problems/data_facts.hpp"
 #include "downwash/problems/geometry_facts.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/scene/shapes.hpp"
 #include "downwash/simulation/robot_facts.hpp"
 
 namespace downwash {
@@ -18,6 +20,9 @@ struct GeometryInput {
     std::string file;  ///< as the program finds it
     bool is_mesh = false;
     GeometryFacts facts;
+    // Of an octree.
+    UnknownSpace unknown = UnknownSpace::free;
+    std::optional<double> unseen_share;  ///< of its box; empty if its file has no free leaves and cannot tell
 };
 
 /// A robot by its name, and what it amounts to.

@@ -71,25 +71,31 @@ Parameter<Problem> orientation(const std::string& path) {
         .between(-360, 360);
 }
 
-/// @param content where the Kind keeps what is in its file
+/// @param content where the Kind keeps what is in its file   @param digest of that
 template <class Kind, class Content>
 Parameter<Problem> file(const std::string& path, std::string_view description,
                         std::shared_ptr<const Content> Kind::*content,
-                        std::shared_ptr<const Content> (*read)(const std::filesystem::path&)) {
+                        std::shared_ptr<const Content> (*read)(const std::filesystem::path&),
+                        std::string (*digest)(const Kind&)) {
     return parameters::file<Problem>(
                path + ".file", description,
                [](auto& p, std::size_t i) -> auto& { return std::get<Kind>(p.obstacles[i].shape).file; },
                [content, read](Problem& p, std::size_t i, const std::string& name) {
                    read_file_of(p, i, name, content, read);
                },
-               [content](const Problem& p, std::size_t i) {
-                   return digest_of(*(std::get<Kind>(p.obstacles[i].shape).*content));
-               })
+               [digest](const Problem& p, std::size_t i) { return digest(std::get<Kind>(p.obstacles[i].shape)); })
         .is_required();
 }
 
+std::string digest_of_file(const Mesh& mesh) {
+    return digest_of(*mesh.surface);
+}
+std::string digest_of_file(const Octomap& octomap) {
+    return digest_of(octomap);
+}
+
 void add_mesh(Rows& rows, const std::string& path) {
-    rows.push_back(file(path, "STL (binary or ASCII) or OBJ", &Mesh::surface, &read_mesh));
+    rows.push_back(file(path, "STL (binary or ASCII) or OBJ", &Mesh::surface, &read_mesh, &digest_of_file));
     rows.push_back(parameters::number<Problem>(
                        path + ".scale", "metres in one unit of the file: 0.001 for millimetres",
                        [](auto& p, std::size_t i) -> auto& { return std::get<Mesh>(p.obstacles[i].shape).scale; })
@@ -105,7 +111,13 @@ void add_mesh(Rows& rows, const std::string& path) {
 }
 
 void add_octomap(Rows& rows, const std::string& path) {
-    rows.push_back(file(path, "OctoMap, .bt or .ot", &Octomap::tree, &read_octomap));
+    rows.push_back(file(path, "OctoMap, .bt or .ot", &Octomap::tree, &read_octomap, &digest_of_file));
+    rows.push_back(parameters::choice<Problem>(
+        path + ".unknown",
+        "what space without a leaf counts as, within the bounding box of all leaves: executed flights count how long "
+        "they are in free one; occupied one is solid",
+        parameters::named(all_unknown_spaces),
+        [](auto& p, std::size_t i) -> auto& { return std::get<Octomap>(p.obstacles[i].shape).unknown; }));
     rows.push_back(center(path, "where the origin of the file stands"));
     rows.push_back(orientation(path));
 }

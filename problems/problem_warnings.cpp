@@ -7,6 +7,7 @@
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/problems/cut_off_goals.hpp"
 #include "downwash/problems/geometry_warnings.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_check.hpp"
@@ -298,6 +299,33 @@ std::vector<KeyError> exact_uncertainty(const Problem& problem) {
          "0, for their defaults, or the whole group"}};
 }
 
+/// The key of a goal by its number in goals_of().
+std::string goal_key(const Problem& problem, std::size_t number) {
+    const std::string index = "[" + std::to_string(number) + "]";
+    if (!problem.targets.empty()) {
+        return number < problem.targets.size() ? "goal.in_any_order" + index : "goal.return_to";
+    }
+    return problem.goals_before.empty() ? "goal" : "goal" + index;
+}
+
+/// Goals to which no way leads.
+std::vector<KeyError> closed_plane(const ProblemCheck& check) {
+    const Problem& problem = check.problem();
+    std::vector<KeyError> warnings;
+    for (const CutOffGoal& goal : cut_off_goals(problem, *check.scene())) {
+        std::vector<std::string> labels;
+        for (const std::size_t obstacle : goal.obstacles) {
+            labels.push_back(label_of(problem.obstacles, obstacle));
+        }
+        warnings.push_back({goal_key(problem, goal.goal),
+                            "is out of reach in this plane of motion: at no pitch and no arm angle does the vehicle "
+                            "get past " +
+                                quoted_labels(labels) +
+                                " within the bounds; move the plane, widen the bounds, or change the scene"});
+    }
+    return warnings;
+}
+
 }  // namespace
 
 std::vector<KeyError> robot_warnings(const Robot& robot) {
@@ -314,6 +342,7 @@ std::vector<KeyError> warnings_of(const ProblemCheck& check) {
         const std::vector<KeyError> found = find(problem);
         all.insert(all.end(), found.begin(), found.end());
     }
+    append(all, closed_plane(check));
     append(all, geometry_warnings(check));
     return all;
 }

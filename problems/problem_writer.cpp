@@ -216,6 +216,13 @@ std::string problem_sha256(const Problem& problem) {
     if (!problem.robot.arm.wash) {
         left_out.emplace_back("robot.arm.wash");
     }
+    const auto is_filled = [](const Obstacle& obstacle) {
+        const auto* octomap = std::get_if<Octomap>(&obstacle.shape);
+        return octomap != nullptr && octomap->unknown == UnknownSpace::occupied;
+    };
+    if (std::none_of(problem.obstacles.begin(), problem.obstacles.end(), is_filled)) {
+        left_out.emplace_back("environment.obstacles[].octomap.unknown");
+    }
     return sha256_hex(Writer(problem, digest, left_out).written());
 }
 

@@ -49,6 +49,10 @@ Json geometry_json(const GeometryInput& geometry) {
               {"solid_pieces", surface.solid_pieces},
               {"open_edges", surface.open_edges}};
     json["open_place"] = surface.open_edges > 0 ? Json(surface.open_place) : Json();
+    if (!geometry.is_mesh) {
+        json["unknown"] = name_of(geometry.unknown);
+        json["unseen_share"] = geometry.unseen_share ? Json(*geometry.unseen_share) : Json();
+    }
     return json;
 }
 

@@ -91,6 +91,12 @@ void read_planning(JsonReader& reader, const Node& root, Solution& solution) {
             reader.read_count({&value, rejected->key + "." + cause}, record.rejected[cause]);
         }
     }
+    if (const auto stopped_by = JsonReader::member(*planning, "stopped_by");
+        stopped_by && stopped_by->json->is_object()) {
+        for (const auto& [obstacle, value] : stopped_by->json->items()) {
+            reader.read_count({&value, stopped_by->key + "." + obstacle}, record.stopped_by[obstacle]);
+        }
+    }
     if (const auto candidates = JsonReader::member(*planning, "candidates");
         candidates && candidates->json->is_object()) {
         reader.read_count(*candidates, "checked", record.candidates.checked);

@@ -36,6 +36,7 @@ Json obstruction_json(const std::optional<Obstruction>& obstruction, std::span<c
     Json json = {{"cause", obstruction->cause}};
     json.update(configuration_json(obstruction->at, axes));
     json["goal_distance_m"] = number(obstruction->goal_distance_m);
+    json["obstacles"] = obstruction->obstacles;
     return json;
 }
 
@@ -108,6 +109,7 @@ Json planning_json(const Found& found, const SearchRecord& record, std::span<con
             {"states_checked", record.states_checked},
             {"improvements", std::move(improvements)},
             {"rejected", record.rejected},
+            {"stopped_by", record.stopped_by},
             {"candidates",
              {{"checked", record.candidates.checked},
               {"failed_execution", record.candidates.failed_execution},
@@ -179,6 +181,9 @@ Json execution_json(const Solution& solution) {
                       {"max_saturation", number(flight.max_saturation)},
                       {"goal_error_m", number(flight.goal_error_m)},
                       {"goals", std::move(goals)}};
+    if (flight.unseen_share) {
+        execution["unseen_share"] = *flight.unseen_share;
+    }
     if (flight.touch) {
         const TouchRecord& touch = *flight.touch;
         execution["contact"] = {{"met", touch.is_met},

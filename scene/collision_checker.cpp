@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -209,6 +210,20 @@ double CollisionChecker::clearance_m(const PlanarPose& pose) const {
         return false;
     });
     return min_m < contact_m ? std::min(min_m, 0.0) : min_m;
+}
+
+std::optional<std::size_t> CollisionChecker::nearest_obstacle(const PlanarPose& pose, double within_m) const {
+    if (!is_finite(pose)) {
+        return std::nullopt;
+    }
+    std::optional<NearObstacle> nearest;
+    impl_->any_piece(pose, [&](const Convex& piece) {
+        if (const auto nearer = impl_->solids.nearest(piece, nearest ? nearest->distance_m : within_m)) {
+            nearest = nearer;
+        }
+        return nearest && nearest->distance_m <= 0;
+    });
+    return nearest ? std::optional(nearest->obstacle) : std::nullopt;
 }
 
 }  // namespace downwash

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <optional>
 
 #include "downwash/base/export.hpp"
 #include "downwash/scene/collision_checker_kind.hpp"
@@ -39,6 +41,10 @@ class DOWNWASH_EXPORT CollisionChecker {
 
     /// Smallest distance from the robot to any obstacle [m]; <= 0 on contact, infinity without obstacles.
     [[nodiscard]] double clearance_m(const PlanarPose& pose) const;
+
+    /// The number in Scene::obstacles() of the obstacle nearest to the robot, if it is nearer than `within_m`. Of
+    /// several in contact, any. Computed by our own geometry, whatever the kind.
+    [[nodiscard]] std::optional<std::size_t> nearest_obstacle(const PlanarPose& pose, double within_m) const;
 
  private:
     struct Impl;

@@ -1,13 +1,17 @@
 #include "downwash/scene/octomap_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "downwash/base/byte_order.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/scene/foreign_file.hpp"
+#include "downwash/scene/octree_boxes.hpp"
 
 namespace downwash {
 namespace {
@@ -99,6 +103,27 @@ struct Place {
     }
 };
 
+/// Cells of the finest level from the lowest to the highest of what was added.
+struct CellBounds {
+    std::array<std::uint32_t, 3> low{cells_across, cells_across, cells_across};
+    std::array<std::uint32_t, 3> high{};  ///< one beyond the highest
+
+    void include(const Place& place) {
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            low[axis] = std::min(low[axis], place.low[axis]);
+            high[axis] = std::max(high[axis], place.low[axis] + place.cells());
+        }
+    }
+    /// In cells of the finest level.
+    [[nodiscard]] double volume() const {
+        double cells = 1;
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            cells *= high[axis] - low[axis];
+        }
+        return cells;
+    }
+};
+
 /// Walks through the nodes as the file orders them, depth first.
 class NodeReader {
  public:
@@ -124,6 +149,7 @@ class NodeReader {
         if (tree_.cubes.empty()) {
             foreign::fail(name_, "has no occupied leaf: expected at least one");
         }
+        describe_unseen();
         return std::move(tree_);
     }
 
@@ -143,7 +169,11 @@ class NodeReader {
             if (state != 0) {
                 count_node();
             }
-            if (state == 2) {
+            if (state == 0) {
+                add_unseen(parent.eighth(child));
+            } else if (state == 1) {
+                add_free(parent.eighth(child));
+            } else if (state == 2) {
                 add_cube(parent.eighth(child));
             }
         }
@@ -177,6 +207,8 @@ class NodeReader {
         if (children == 0) {
             if (log_odds >= 0) {
                 add_cube(place);
+            } else {
+                add_free(place);
             }
             return;
         }
@@ -185,6 +217,8 @@ class NodeReader {
             if ((children >> child & 1U) != 0) {
                 count_node();
                 read_node(place.eighth(child));
+            } else {
+                add_unseen(place.eighth(child));
             }
         }
     }
@@ -221,6 +255,61 @@ class NodeReader {
             cube.center_local_m[axis] = middle * header_.resolution_m;
         }
         tree_.cubes.push_back(cube);
+        add_known(place);
+    }
+
+    void add_free(const Place& place) {
+        tree_.has_free_leaf = true;
+        add_known(place);
+    }
+
+    void add_known(const Place& place) {
+        known_.include(place);
+        const std::uint64_t cells = place.cells();
+        known_cells_ += cells * cells * cells;
+    }
+
+    void add_unseen(const Place& place) {
+        if (unseen_.size() < max_pieces) {
+            unseen_.push_back(place);
+        } else {
+            tree_.lists_unseen = false;
+        }
+    }
+
+    /// Cells `low` to `high` - 1 of the finest level, counted from the middle of the tree.
+    [[nodiscard]] CellBlock block_of(const std::array<std::uint32_t, 3>& low,
+                                     const std::array<std::uint32_t, 3>& high) const {
+        constexpr std::int64_t middle = cells_across / 2;
+        CellBlock block{header_.resolution_m, {}, {}};
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            block.low[axis] = low[axis] - middle;
+            block.high[axis] = high[axis] - middle;
+        }
+        return block;
+    }
+
+    /// The known box, and what of it has no leaf.
+    void describe_unseen() {
+        tree_.known_box = merged_boxes({block_of(known_.low, known_.high)}).front();
+        tree_.unseen_share = 1 - static_cast<double>(known_cells_) / known_.volume();
+        std::vector<CellBlock> blocks;
+        for (const Place& place : unseen_) {
+            std::array<std::uint32_t, 3> low = place.low;
+            std::array<std::uint32_t, 3> high{};
+            bool is_within = true;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                high[axis] = std::min(low[axis] + place.cells(), known_.high[axis]);
+                low[axis] = std::max(low[axis], known_.low[axis]);
+                is_within = is_within && low[axis] < high[axis];
+            }
+            if (is_within) {
+                blocks.push_back(block_of(low, high));
+            }
+        }
+        if (tree_.lists_unseen) {
+            tree_.unseen = merged_boxes(std::move(blocks));
+        }
     }
 
     [[noreturn]] void fail(const std::string& message) const { foreign::fail_at(name_, at_, message); }
@@ -231,6 +320,9 @@ class NodeReader {
     std::size_t at_;
     std::uint64_t nodes_ = 0;
     OccupancyTree tree_;
+    CellBounds known_;
+    std::uint64_t known_cells_ = 0;  ///< of the finest level, in all leaves
+    std::vector<Place> unseen_;      ///< also outside of the known box
 };
 
 }  // namespace

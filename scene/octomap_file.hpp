@@ -13,8 +13,8 @@ namespace downwash {
 /// Reads the occupied space of an octree that OctoMap wrote: binary (.bt) or with probabilities (.ot, little-endian,
 /// id OcTree or ColorOcTree, whose colours are passed over). A leaf of probability 0.5 or more is occupied. The first
 /// line of the file gives its format. Each occupied leaf becomes a cube; a leaf pruned n levels above the deepest one
-/// has a side of 2^n times the resolution. Free and unknown space gives nothing. (Hornung et al. 2013, OctoMap 1.9.7's
-/// readBinaryNode and readNodesRecurs.)
+/// has a side of 2^n times the resolution. Free leaves tell with the occupied ones what was seen; space without a leaf
+/// was not (OccupancyTree::unseen). (Hornung et al. 2013, OctoMap 1.9.7's readBinaryNode and readNodesRecurs.)
 ///
 /// One walk checks the stream of nodes and makes the cubes; docs/dependencies.md says why OctoMap does not read it.
 /// A file is rejected if it has more than 512 MiB, a resolution outside 0.0001 to 30 m (at which the farthest corners

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "downwash/scene/bounds_tree.hpp"
 #include "downwash/scene/convex.hpp"
@@ -16,18 +18,12 @@
 namespace downwash {
 namespace {
 
-/// Cubes `low` to `high` - 1 of the grid of one size.
-struct Block {
-    double side_m;
-    std::array<std::int64_t, 3> low, high;
-};
-
 /// How far off its place a cube may lie, in sides: rounding.
 constexpr double place_tolerance = 1e-9;
 
 /// Adds the cube as a block; whether it lies on the grid of its size.
-bool add_block(const OccupiedCube& cube, std::vector<Block>& blocks) {
-    Block block{cube.side_m, {}, {}};
+bool add_block(const OccupiedCube& cube, std::vector<CellBlock>& blocks) {
+    CellBlock block{cube.side_m, {}, {}};
     for (std::size_t k = 0; k < 3; ++k) {
         const double place = cube.center_local_m[k] / cube.side_m - 0.5;
         if (!(std::abs(place) < 1e9) || std::abs(place - std::round(place)) > place_tolerance) {
@@ -41,18 +37,18 @@ bool add_block(const OccupiedCube& cube, std::vector<Block>& blocks) {
 }
 
 /// Joins blocks that follow one another along an axis and agree along the others.
-void merge_along(std::size_t axis, std::vector<Block>& blocks) {
+void merge_along(std::size_t axis, std::vector<CellBlock>& blocks) {
     const std::size_t other = (axis + 1) % 3;
     const std::size_t third = (axis + 2) % 3;
-    const auto profile = [&](const Block& b) {
+    const auto profile = [&](const CellBlock& b) {
         return std::tuple(b.side_m, b.low[other], b.high[other], b.low[third], b.high[third]);
     };
-    std::sort(blocks.begin(), blocks.end(), [&](const Block& a, const Block& b) {
+    std::sort(blocks.begin(), blocks.end(), [&](const CellBlock& a, const CellBlock& b) {
         return profile(a) < profile(b) || (profile(a) == profile(b) && a.low[axis] < b.low[axis]);
     });
     std::size_t kept = 0;
     for (std::size_t i = 1; i < blocks.size(); ++i) {
-        Block& last = blocks[kept];
+        CellBlock& last = blocks[kept];
         if (profile(blocks[i]) == profile(last) && blocks[i].low[axis] <= last.high[axis]) {
             last.high[axis] = std::max(last.high[axis], blocks[i].high[axis]);
         } else {
@@ -62,7 +58,7 @@ void merge_along(std::size_t axis, std::vector<Block>& blocks) {
     blocks.resize(blocks.empty() ? 0 : kept + 1);
 }
 
-LocalBox box_of(const Block& block) {
+LocalBox box_of(const CellBlock& block) {
     LocalBox box{};
     for (std::size_t k = 0; k < 3; ++k) {
         box.center_m[k] = 0.5 * block.side_m * static_cast<double>(block.low[k] + block.high[k]);
@@ -73,26 +69,40 @@ LocalBox box_of(const Block& block) {
 
 }  // namespace
 
-std::vector<LocalBox> merged_boxes(const OccupancyTree& tree) {
-    std::vector<Block> blocks;
+std::vector<LocalBox> merged_boxes(std::vector<CellBlock> blocks) {
+    for (const std::size_t axis : {0U, 1U, 2U}) {
+        merge_along(axis, blocks);
+    }
     std::vector<LocalBox> boxes;
-    for (const OccupiedCube& cube : tree.cubes) {
+    boxes.reserve(blocks.size());
+    std::transform(blocks.begin(), blocks.end(), std::back_inserter(boxes), box_of);
+    return boxes;
+}
+
+std::vector<LocalBox> merged_boxes(const std::vector<OccupiedCube>& cubes) {
+    std::vector<CellBlock> blocks;
+    std::vector<LocalBox> boxes;
+    for (const OccupiedCube& cube : cubes) {
         if (!add_block(cube, blocks)) {
             boxes.push_back({cube.center_local_m, {cube.side_m, cube.side_m, cube.side_m}});
         }
     }
-    for (const std::size_t axis : {0U, 1U, 2U}) {
-        merge_along(axis, blocks);
-    }
-    for (const Block& block : blocks) {
-        boxes.push_back(box_of(block));
+    const std::vector<LocalBox> merged = merged_boxes(std::move(blocks));
+    boxes.insert(boxes.end(), merged.begin(), merged.end());
+    return boxes;
+}
+
+std::vector<LocalBox> solid_boxes(const Octomap& octomap) {
+    std::vector<LocalBox> boxes = merged_boxes(octomap.tree->cubes);
+    if (octomap.unknown == UnknownSpace::occupied) {
+        boxes.insert(boxes.end(), octomap.tree->unseen.begin(), octomap.tree->unseen.end());
     }
     return boxes;
 }
 
-std::size_t piece_count(const OccupancyTree& tree) {
+std::size_t piece_count(const Octomap& octomap) {
     std::vector<BoundingBox> boxes;
-    for (const LocalBox& box : merged_boxes(tree)) {
+    for (const LocalBox& box : solid_boxes(octomap)) {
         boxes.push_back({box.center_m - 0.5 * box.size_m, box.center_m + 0.5 * box.size_m});
     }
     std::vector<std::size_t> piece(boxes.size());
@@ -105,7 +115,7 @@ std::size_t piece_count(const OccupancyTree& tree) {
         return i;
     };
     const BoundsTree index(boxes);
-    const double touching_m = place_tolerance * tree.resolution_m;
+    const double touching_m = place_tolerance * octomap.tree->resolution_m;
     std::size_t pieces = boxes.size();
     for (std::size_t i = 0; i < boxes.size(); ++i) {
         const auto gap = [&](const BoundingBox& other) { return gap_m(boxes[i], other); };

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -111,10 +113,14 @@ struct ShapeInspector {
             return;
         }
         const auto& cubes = octomap.tree->cubes;
+        const bool is_filled = octomap.unknown == UnknownSpace::occupied;
         const auto is_sound = [](const OccupiedCube& cube) {
             return is_near(cube.center_local_m) && cube.side_m > 0 && cube.side_m <= farthest_m;
         };
-        require(!cubes.empty(), ".octomap.file", "has no occupied cube") &&
+        require(!is_filled || octomap.tree->lists_unseen, ".octomap.unknown",
+                "is occupied, and the unseen space of the file has more than " + std::to_string(max_pieces) +
+                    " pieces: write the octree with coarser leaves") &&
+            require(solid_box_count(octomap) > 0, ".octomap.file", "has no occupied cube") &&
             require_pieces(cubes.size(), "occupied cubes", ".octomap.file") &&
             require(std::all_of(cubes.begin(), cubes.end(), is_sound), ".octomap.file",
                     "has a cube with a centre or side that is not finite, or beyond 1e6 m");
@@ -176,6 +182,7 @@ void require_valid(const std::vector<Obstacle>& obstacles) {
 /// Adds the parts of one obstacle and returns the bounds of them all.
 struct PartsMaker {
     const Obstacle& obstacle;
+    std::size_t number;
     const std::string& key;
     SceneSolids& solids;
 
@@ -190,16 +197,18 @@ struct PartsMaker {
         }
     }
     BoundingBox operator()(const Primitive& primitive) const {
+        solids.obstacle_of_primitive.push_back(number);
         solids.parts.add(primitive, obstacle.center_world_m, placement_of(primitive, rotation_of(obstacle.rpy_rad)));
         return solids.parts.primitive_bounds.back();
     }
     BoundingBox operator()(const Octomap& octomap) const {
-        const std::vector<LocalBox> boxes = merged_boxes(*octomap.tree);
+        const std::vector<LocalBox> boxes = solid_boxes(octomap);
         require_room(boxes.size(), ".octomap.file");
         Parts& parts = solids.parts;
         const Placement placement = placement_of(Box{}, rotation_of(obstacle.rpy_rad));
         const auto turn = static_cast<std::uint32_t>(parts.octree_placements.size());
         parts.octree_placements.push_back(placement);
+        solids.obstacle_of_octree.push_back(number);
         BoundingBox bounds = nothing;
         for (const LocalBox& box : boxes) {
             const OctreeBox placed{to_world(placement.rotation, box.center_m), box.size_m, turn};
@@ -220,6 +229,7 @@ struct PartsMaker {
         std::vector<Triangle>& triangles = solids.parts.triangles;
         const Matrix3 rotation = rotation_of(obstacle.rpy_rad);
         const std::size_t first = triangles.size();
+        solids.meshes.push_back({first, number});
         BoundingBox bounds = nothing;
         const auto place_from = [&](std::size_t at) {
             for (; at < triangles.size(); ++at) {
@@ -234,7 +244,7 @@ struct PartsMaker {
         place_from(first);
         const std::size_t first_of_sheets = triangles.size();
         if (first_of_sheets > first) {
-            solids.closed_surfaces.push_back({first, first_of_sheets, bounds});
+            solids.closed_surfaces.push_back({first, first_of_sheets, bounds, number});
         }
         add_triangles(mesh, sides, true, triangles);
         place_from(first_of_sheets);
@@ -252,11 +262,24 @@ std::shared_ptr<const SceneSolids> placed(std::vector<Obstacle> obstacles) {
     for (std::size_t i = 0; i < obstacles.size(); ++i) {
         const std::string key = "obstacles[" + std::to_string(i) + "]";
         solids->facts.push_back({1, 1, 0, {}});
-        solids->bounds.push_back(std::visit(PartsMaker{obstacles[i], key, *solids}, obstacles[i].shape));
+        solids->bounds.push_back(std::visit(PartsMaker{obstacles[i], i, key, *solids}, obstacles[i].shape));
     }
     solids->parts.index();
     solids->obstacles = std::move(obstacles);
     return solids;
+}
+
+/// What counts as free of an octree although no sensor saw it, as an obstacle of its own; nothing if there is none.
+std::optional<Obstacle> unseen_of(const Obstacle& obstacle) {
+    const auto* octomap = std::get_if<Octomap>(&obstacle.shape);
+    if (octomap == nullptr || octomap->unknown == UnknownSpace::occupied || !octomap->tree->has_free_leaf ||
+        octomap->tree->unseen.empty()) {
+        return std::nullopt;
+    }
+    OccupancyTree unseen{octomap->tree->resolution_m, {}, octomap->tree->unseen};
+    Obstacle alone = obstacle;
+    alone.shape = Octomap{"", std::make_shared<const OccupancyTree>(std::move(unseen)), UnknownSpace::occupied};
+    return alone;
 }
 
 }  // namespace
@@ -277,6 +300,25 @@ const BoundingBox& Scene::bounds(std::size_t obstacle) const noexcept {
 
 const SurfaceFacts& Scene::facts(std::size_t obstacle) const noexcept {
     return solids_->facts[obstacle];
+}
+
+std::size_t Scene::obstacle_of(std::size_t part) const noexcept {
+    return solids_->obstacle_of(part);
+}
+
+std::shared_ptr<const Scene> Scene::unseen_space() const {
+    std::call_once(solids_->is_unseen_made, [this] {
+        std::vector<Obstacle> all;
+        for (const Obstacle& obstacle : obstacles()) {
+            if (std::optional<Obstacle> unseen = unseen_of(obstacle)) {
+                all.push_back(std::move(*unseen));
+            }
+        }
+        if (!all.empty()) {
+            solids_->unseen = std::make_shared<const Scene>(std::move(all));
+        }
+    });
+    return solids_->unseen;
 }
 
 std::size_t Scene::part_count() const noexcept {

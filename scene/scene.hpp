@@ -36,6 +36,13 @@ class DOWNWASH_EXPORT Scene {
     /// order.
     [[nodiscard]] std::size_t part_count() const noexcept;
 
+    /// The number in obstacles() of the obstacle that a part belongs to.
+    [[nodiscard]] std::size_t obstacle_of(std::size_t part) const noexcept;
+
+    /// What counts as free of octrees although no sensor saw it (Octomap::unknown), as a scene of its own; nullptr if
+    /// there is none. Octrees without a free leaf do not tell. Made at the first call.
+    [[nodiscard]] std::shared_ptr<const Scene> unseen_space() const;
+
     /// How many parts are primitives.
     [[nodiscard]] std::size_t primitive_count() const noexcept;
 

@@ -10,7 +10,8 @@ namespace downwash {
 /// SHA-256 of a surface's vertices and triangles, down to the last bit and in their order, as 64 hexadecimal digits.
 [[nodiscard]] DOWNWASH_EXPORT std::string digest_of(const TriangleMesh& mesh);
 
-/// SHA-256 of an octree's resolution and cubes, in hexadecimal digits.
-[[nodiscard]] DOWNWASH_EXPORT std::string digest_of(const OccupancyTree& tree);
+/// SHA-256 of what is solid in an octree: its resolution and cubes and, where it counts as occupied, its unseen space;
+/// in hexadecimal digits. @pre the octree was read
+[[nodiscard]] DOWNWASH_EXPORT std::string digest_of(const Octomap& octomap);
 
 }  // namespace downwash

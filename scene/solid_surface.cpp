@@ -89,9 +89,7 @@ class SurfaceBuilder {
         surface.triangles = mesh.surface->triangles;
     }
     void operator()(const Octomap& octomap) {
-        for (const OccupiedCube& cube : octomap.tree->cubes) {
-            add_box(cube.center_local_m, {cube.side_m, cube.side_m, cube.side_m});
-        }
+        for_each_solid_box(octomap, [this](const LocalBox& box) { add_box(box.center_m, box.size_m); });
     }
 
     TriangleMesh surface;

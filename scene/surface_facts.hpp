@@ -15,7 +15,7 @@ struct SurfaceFacts {
     Vector3 open_place{};          ///< middle of one open edge, in the unit and frame of the file; none: 0
 };
 
-/// How many pieces the cubes of an octree form; cubes that touch belong to the same one.
-[[nodiscard]] DOWNWASH_EXPORT std::size_t piece_count(const OccupancyTree& tree);
+/// How many pieces the solid boxes of an octree form; boxes that touch belong to the same one.
+[[nodiscard]] DOWNWASH_EXPORT std::size_t piece_count(const Octomap& octomap);
 
 }  // namespace downwash

@@ -45,6 +45,18 @@ class Recorder {
     /// it.
     void expect(const Touch& touch) { touch_ = &touch; }
 
+    /// From here on counts the states at which the robot is in unseen space, if the scene has any.
+    void count_unseen() {
+        if (const std::shared_ptr<const Scene> unseen = model_.scene().unseen_space()) {
+            unseen_.emplace(unseen, model_.plane(), model_.robot().shape());
+        }
+    }
+    /// The share of those states in all that were counted; empty without unseen space.
+    [[nodiscard]] std::optional<double> unseen_share() const {
+        return unseen_ ? std::optional(static_cast<double>(unseen_states_) / static_cast<double>(states_))
+                       : std::nullopt;
+    }
+
     /// Flown so far.
     [[nodiscard]] std::int64_t ticks() const noexcept { return tick_; }
 
@@ -65,6 +77,10 @@ class Recorder {
     Rejection judge(const FlightState& state, const ReferencePoint& reference, bool is_first = false) {
         const PlanarPose pose = among_obstacles(pose_of(state), world_);
         clearance_m_ = model_.executed_clearance_m(pose);
+        if (unseen_) {
+            ++states_;
+            unseen_states_ += unseen_->is_nearer_than(pose, 0) ? 1 : 0;
+        }
         const PlanarPose checked = touch_ != nullptr ? simulation::off_surface(pose, *touch_, depth_m_) : pose;
         const double checked_m = touch_ != nullptr ? model_.executed_clearance_m(checked) : clearance_m_;
         const PlanarPose checked_before = std::exchange(checked_, checked);
@@ -158,6 +174,8 @@ class Recorder {
     const FlownWorld* world_;
     simulation::WorldSurroundings<double, simulation::FlightEffect> surroundings_;
     Execution& execution_;
+    std::optional<CollisionChecker> unseen_;  ///< the robot in unseen space
+    std::int64_t states_ = 0, unseen_states_ = 0;
     std::int64_t tick_ = 0;
     double clearance_m_ = std::numeric_limits<double>::infinity();
     PlanarPose checked_;    ///< for collisions, at the last state
@@ -254,6 +272,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     execution.min_clearance_m = std::numeric_limits<double>::infinity();
 
     Recorder recorder(model, world, effect, execution);
+    recorder.count_unseen();
     const simulation::FlightLoop loop(model.tick(), world, effect);
     FlightState state = start;
     ReferencePoint reference = knots.front().point;
@@ -295,6 +314,7 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     execution.outcome = outcome_of(rejection);
     execution.energy_j = execution.rows.back().energy_j;
     execution.duration_s = execution.rows.back().t_s;
+    execution.unseen_share = recorder.unseen_share();
     judge_goals(model, goals, ends, execution);
     return execution;
 }

@@ -85,6 +85,9 @@ struct Execution : FlightSums {
     double goal_error_m = 0;           ///< the worst of all goals
     double lateral_m = 0;              ///< how far the vehicle was to the left of its plane; see FlownWorld
     std::vector<GoalVisit> goals;      ///< one for each, in their order
+    /// Share of the control ticks at which a part of the robot is in space that no sensor saw and that counts as free
+    /// (Scene::unseen_space()); empty if the scene has none.
+    std::optional<double> unseen_share;
     std::optional<TouchRecord> touch;  ///< touch of the last goal, where it asks for one and the flight came to it
     int rotor_count = 0;
     bool has_rotor_lag = false;

@@ -133,6 +133,9 @@ ExitCode run(const ExecuteArguments& given) {
     if (world) {
         solution.execution_world = {*given.world, seed_of(given, read)};
     }
+    if (const auto warning = unseen_warning(solution, given.problem)) {
+        noting(warnings, given.is_quiet)(*warning);
+    }
     interruption.expect_results();
     const RunRecord record = folder.write(read, given.problem, warnings, solution, input_facts(read, model->scene()));
     write_page(folder.path(), record, given.threads);

@@ -76,6 +76,16 @@ std::string columns_text(const CsvFacts& csv) {
     return text;
 }
 
+/// What of an octree no sensor has seen; nothing of a mesh.
+std::string unseen_text(const GeometryInput& geometry) {
+    if (geometry.is_mesh) {
+        return "";
+    }
+    return geometry.unseen_share ? fmt::format(", {:.1f} % of its box unseen ({})", 100 * *geometry.unseen_share,
+                                               name_of(geometry.unknown))
+                                 : fmt::format(", no free leaves (unknown: {})", name_of(geometry.unknown));
+}
+
 /// One row for each, of at most six.
 template <class Input>
 std::string rows_of(const std::string& name, const std::vector<Input>& inputs) {
@@ -99,11 +109,11 @@ std::string text_of(const GeometryInput& geometry) {
     const auto range = [&extent](std::size_t k) {
         return fmt::format("{} to {} m", to_text(extent.low_m[k], 6), to_text(extent.high_m[k], 6));
     };
-    return fmt::format("{}: {} of {} {}, {}, {}, x {}, y {}, z {} in the world",
+    return fmt::format("{}: {} of {} {}, {}, {}{}, x {}, y {}, z {} in the world",
                        geometry.name.empty() ? geometry.key : excerpt(geometry.name),
                        geometry.is_mesh ? "mesh" : "octree", facts.element_count,
                        geometry.is_mesh ? "triangles" : "cubes", counted(surface.pieces, "piece"),
-                       surface_name(surface), range(0), range(1), range(2));
+                       surface_name(surface), unseen_text(geometry), range(0), range(1), range(2));
 }
 
 std::string text_of(const RobotInput& robot) {

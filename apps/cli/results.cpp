@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/run_folder.hpp"
+#include "downwash/problems/cut_off_goals.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -128,6 +132,11 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
             }
         }
     }
+    if (flight.unseen_share && *flight.unseen_share > 0) {
+        text += table_row("unseen space",
+                          fmt::format("a part of the robot is in it for {:.1f} % of the flight; it counts as free",
+                                      100 * *flight.unseen_share));
+    }
     text += table_row("min. clearance",
                       std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
     return text;
@@ -167,6 +176,17 @@ std::string certificate_rows(const Certificate& certificate, bool is_of_part, co
 
 }  // namespace
 
+std::string most_stopping(const std::map<std::string, std::uint64_t>& stopped_by) {
+    constexpr std::size_t most = 3;
+    std::vector<std::pair<std::string, std::uint64_t>> all(stopped_by.begin(), stopped_by.end());
+    std::ranges::stable_sort(all, std::ranges::greater(), [](const auto& each) { return each.second; });
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, all.size()); ++i) {
+        text += fmt::format("{}{} {}", i > 0 ? ", " : "", all[i].first, all[i].second);
+    }
+    return text + (all.size() > most ? fmt::format(", and {} others", all.size() - most) : "");
+}
+
 std::string verdict_on_flight(const Execution& flight) {
     const std::string name = flight.aero ? "The flight with direct aerodynamics " : "The flight in free air ";
     switch (flight.outcome) {
@@ -184,6 +204,18 @@ std::string verdict_on_flight(const Execution& flight) {
             break;
     }
     return name + "misses the goal.";
+}
+
+std::optional<LocatedError> unseen_warning(const Solution& solution, const std::string& problem) {
+    const std::optional<double> share = solution.execution ? solution.execution->unseen_share : std::nullopt;
+    if (!share || *share <= 0) {
+        return std::nullopt;
+    }
+    return LocatedError{problem, 1, 1,
+                        fmt::format("for {:.1f} % of its flight a part of the robot is in space of an octree that no "
+                                    "sensor saw: it counts as free, but anything may stand there; `unknown: occupied` "
+                                    "makes it solid",
+                                    100 * *share)};
 }
 
 std::string verdict_on_search(const Solution& solution) {
@@ -210,6 +242,12 @@ std::string verdict_on_search(const Solution& solution) {
                    fmt::format("A plan was found, but in {} of {} worlds its flight fails: it is not certified.",
                                certificate.failures, certificate.worlds);
         }
+    }
+    if (solution.obstruction && solution.obstruction->cause == "closed_plane") {
+        return stopped + fmt::format("No way leads to {} in this plane of motion: {} close{} it.",
+                                     solution.order ? "the targets and back" : missed_goal(solution),
+                                     quoted_labels(solution.obstruction->obstacles),
+                                     solution.obstruction->obstacles.size() == 1 ? "s" : "");
     }
     if (solution.obstruction && solution.obstruction->cause == "certificate") {
         return stopped + fmt::format("No solution within the limits: every way to {} failed in too many worlds.",
@@ -272,6 +310,9 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
                   record.first_solution_wall_s ? fmt::format("after {:.3f} s", *record.first_solution_wall_s) : "none");
     text += table_row("search", fmt::format("{} iterations in {:.2f} s", record.iterations, record.wall_s));
     text += table_row("rejected", rejections(record));
+    if (!record.stopped_by.empty()) {
+        text += table_row("collisions with", most_stopping(record.stopped_by));
+    }
     if (const Candidates& plans = record.candidates;
         plans.failed_execution + plans.failed_certificate + plans.unfinished > 0) {
         text += table_row("candidates",
@@ -288,10 +329,18 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     }
     if (solution.obstruction) {
         const Obstruction& o = *solution.obstruction;
-        text += table_row("stopped by",
-                          fmt::format("{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
-                                      o.at[plane::x], o.at[plane::z], o.at[plane::arm] * degrees_per_radian,
-                                      o.goal_distance_m, missed_region(solution)));
+        const bool is_closed = o.cause == "closed_plane";
+        if (is_closed) {
+            text += table_row("closed by", quoted_labels(o.obstacles));
+            text += table_row("", "At no pitch and no arm angle does the vehicle get past within the bounds.");
+            text += table_row("", "Move the plane of motion, widen the bounds, or change the scene.");
+        } else {
+            const std::string by = o.obstacles.empty() ? "" : " (nearest: " + quoted_labels(o.obstacles) + ")";
+            text += table_row("stopped by",
+                              fmt::format("{}{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
+                                          by, o.at[plane::x], o.at[plane::z], o.at[plane::arm] * degrees_per_radian,
+                                          o.goal_distance_m, missed_region(solution)));
+        }
         if (o.cause == unfinished_certificate) {
             text +=
                 table_row("", "The time was over before this plan was flown in enough worlds: give the search more.");
@@ -304,7 +353,7 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
         } else if (o.cause == "direct_flight") {
             text += table_row("", "The planner discarded every plan: executed with direct aerodynamics,");
             text += table_row("", "the last one failed or came nearer to an obstacle than the margin.");
-        } else if (o.goal_distance_m <= 0) {
+        } else if (!is_closed && o.goal_distance_m <= 0) {
             text += table_row("", "The vehicle reached " + missed_region(solution) + " but could not hover there.");
             text += table_row("", "Run `downwash aeromap hold` to check whether a hover is stable.");
         }

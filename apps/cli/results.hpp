@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 
 #include "downwash/cli/exit_code.hpp"
 #include "downwash/planner/solution.hpp"
+#include "downwash/problems/located_error.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/simulation/execution.hpp"
 
@@ -16,8 +20,15 @@ namespace downwash::cli {
 /// The result of a search, in one sentence.
 [[nodiscard]] std::string verdict_on_search(const Solution& solution);
 
+/// The obstacles that stopped most edges and how many, the first ones first: "pier 15800, bay 93".
+[[nodiscard]] std::string most_stopping(const std::map<std::string, std::uint64_t>& stopped_by);
+
 /// How a flight ended, in one sentence.
 [[nodiscard]] std::string verdict_on_flight(const Execution& flight);
+
+/// What to warn of a flight through space of a scan that no sensor saw; nothing if it stays out of it.
+/// @param problem file that the warning names
+[[nodiscard]] std::optional<LocatedError> unseen_warning(const Solution& solution, const std::string& problem);
 
 /// A solution for people: the verdict, then a table.
 [[nodiscard]] std::string summary_of(const std::string& verdict, const Problem& problem, const Solution& solution,

@@ -17,6 +17,7 @@
 #include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/planner/remedies.hpp"
+#include "downwash/problems/cut_off_goals.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/problems/visit_order.hpp"
@@ -51,7 +52,11 @@ std::string outcome_of(const Remedy& remedy) {
         return fmt::format("not certified: {} of {} worlds fail", remedy.certificate->failures,
                            remedy.certificate->worlds);
     }
-    return "not certified in time";
+    if (!remedy.closed_by.empty()) {
+        return "no way in this plane: closed by " + quoted_labels(remedy.closed_by);
+    }
+    return "not certified in time" +
+           (remedy.stopped_by.empty() ? "" : "; collisions with " + most_stopping(remedy.stopped_by));
 }
 
 /// Whether all that stood between a plan and its certificate was time.
@@ -101,6 +106,9 @@ ExitCode run(const SolveArguments& given) {
         display.say(announcement(read));
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = downwash::solve(plannable, options);
+    }
+    if (const auto warning = unseen_warning(solution, given.problem)) {
+        noting(warnings, given.is_quiet)(*warning);
     }
     const InputFacts inputs = input_facts(read, plannable.model->scene());
     const RunRecord record = folder.write(read, given.problem, warnings, solution, inputs);

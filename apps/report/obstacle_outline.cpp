@@ -138,28 +138,26 @@ class OutlineOf {
 
     void operator()(const Octomap& octomap) const {
         constexpr double half_diagonal = 0.8661;  // of a cube, in its sides
-        const auto cube_at = [this](const OccupiedCube& cube) {
-            return box_at(cube.center_local_m, {cube.side_m, cube.side_m, cube.side_m}, frame_);
-        };
         std::vector<Ring> sections;
-        for (const OccupiedCube& cube : octomap.tree->cubes) {
-            if (std::abs(frame_(cube.center_local_m)[1]) <= half_diagonal * cube.side_m) {
-                add_section(cube_at(cube), sections);
+        for_each_solid_box(octomap, [&](const LocalBox& box) {
+            const double longest_m = std::max({box.size_m[0], box.size_m[1], box.size_m[2]});
+            if (std::abs(frame_(box.center_m)[1]) <= half_diagonal * longest_m) {
+                add_section(box_at(box.center_m, box.size_m, frame_), sections);
             }
-        }
+        });
         outline_.rings = joined_rings(sections);
         outline_.is_cut = !outline_.rings.empty();
         if (!outline_.is_cut) {
             std::vector<PlanePoint> corners;
-            for (const OccupiedCube& cube : octomap.tree->cubes) {
+            for_each_solid_box(octomap, [&](const LocalBox& box) {
                 constexpr std::size_t many = 100'000;
-                for (const Vector3& corner_m : cube_at(cube).corners_m) {
+                for (const Vector3& corner_m : box_at(box.center_m, box.size_m, frame_).corners_m) {
                     corners.push_back(projected(corner_m));
                 }
                 if (corners.size() > many) {
                     corners = convex_hull(std::move(corners));
                 }
-            }
+            });
             outline_.rings = {convex_hull(std::move(corners))};
         }
     }

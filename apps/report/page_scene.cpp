@@ -96,9 +96,9 @@ class SolidOf {
         return mesh.surface->triangles.size() > max_shown_triangles ? Json() : triangles_json(obstacle_, plane_);
     }
     Json operator()(const Octomap& octomap) const {
-        constexpr std::size_t triangles_of_cube = 12;
-        return octomap.tree->cubes.size() * triangles_of_cube > max_shown_triangles ? Json()
-                                                                                    : triangles_json(obstacle_, plane_);
+        constexpr std::size_t triangles_of_box = 12;
+        return solid_box_count(octomap) * triangles_of_box > max_shown_triangles ? Json()
+                                                                                 : triangles_json(obstacle_, plane_);
     }
 
  private:

@@ -91,9 +91,7 @@ class Validity : public ob::StateValidityChecker {
     Validity(const ob::SpaceInformationPtr& information, const SearchSpace& space, QueryCounts& counts)
         : ob::StateValidityChecker(information), space_(space), counts_(counts) {}
 
-    bool isValid(const ob::State* state) const override {
-        return counts_.note(space_.rejection_at(read(state, space_)));
-    }
+    bool isValid(const ob::State* state) const override { return space_.is_allowed(read(state, space_), counts_); }
 
  private:
     const SearchSpace& space_;
@@ -125,7 +123,7 @@ class StraightMotion : public ob::MotionValidator {
         const int steps = static_cast<int>(std::ceil(motion_m / step_m_)) + 1;
         for (int i = 1; i <= steps; ++i) {
             const Configuration c = between(a, b, static_cast<double>(i) / steps);
-            if (!counts_.note(space_.rejection_at(c))) {
+            if (!space_.is_allowed(c, counts_)) {
                 last_valid.second = static_cast<double>(i - 1) / steps;
                 if (last_valid.first != nullptr) {
                     si_->getStateSpace()->interpolate(from, to, last_valid.second, last_valid.first);

@@ -10,6 +10,7 @@
 
 #include "downwash/search/closed_loop_flights.hpp"
 #include "downwash/search/line_flights.hpp"
+#include "downwash/search/obstacle_labels.hpp"
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash::planning {
@@ -81,6 +82,9 @@ FlightStatistics& FlightStatistics::operator+=(const FlightStatistics& other) {
     for (const auto& [cause, count] : other.rejected) {
         rejected[cause] += count;
     }
+    for (const auto& [obstacle, count] : other.stopped_by) {
+        stopped_by[obstacle] += count;
+    }
     if (other.obstruction && (!obstruction || other.obstruction->goal_distance_m < obstruction->goal_distance_m)) {
         obstruction = other.obstruction;
     }
@@ -130,8 +134,11 @@ bool PlannedFlights::leads_to_goal(const ReferenceSegment& segment) const {
 }
 
 void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at,
-                            FlightStatistics& counts) const {
+                            const PlanarPose& pose, FlightStatistics& counts) const {
     count_rejection(rejection, counts);
+    if (rejection == Rejection::collision) {
+        count_collision(task_.model, pose, task_.problem.planner.safety_margin_m, counts.stopped_by);
+    }
     if (rejection == Rejection::interrupted || !leads_to_goal(segment)) {
         return;
     }
@@ -139,6 +146,9 @@ void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection
     std::optional<Obstruction>& nearest = counts.obstruction;
     if (!nearest || distance_m < nearest->goal_distance_m) {
         nearest = {cause_of(rejection), at, distance_m};
+        if (rejection == Rejection::collision || rejection == Rejection::flyable_area) {
+            nearest->obstacles = obstacles_near(task_.model, pose);
+        }
     }
 }
 
@@ -146,21 +156,27 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment, FlightStat
     constexpr double spacing_m = 0.1;
     const std::int64_t samples = samples_along(segment, task_, spacing_m);
     const auto at = [&](std::int64_t i) { return segment.at_tick(segment.ticks() * i / samples); };
+    const auto pose_at = [&](const ReferencePoint& point) {
+        PlanarPose pose = level_at(configuration_of(point));
+        pose.pitch_rad = task_.flies() && limits_.max_thrust_ratio ? pitch_along(point) : 0;
+        return pose;
+    };
     const auto rejection_at = [&](const ReferencePoint& point) {
-        return task_.space.rejection_at(configuration_of(point),
-                                        task_.flies() && limits_.max_thrust_ratio ? pitch_along(point) : 0);
+        return task_.space.rejection_at(configuration_of(point), pose_at(point).pitch_rad);
     };
     Rejection rejection = Rejection::none;
+    std::int64_t stopped_at = samples;
     for (std::int64_t i = samples; i >= 1 && rejection == Rejection::none;
          --i) {  // the new end first: likelier to collide
         ++counts.states_checked;
         rejection = rejection_at(at(i));
+        stopped_at = i;
     }
     if (rejection == Rejection::none) {
         return true;
     }
     if (!leads_to_goal(segment)) {
-        count_rejection(rejection, counts);
+        reject(segment, rejection, configuration_of(at(stopped_at)), pose_at(at(stopped_at)), counts);
         return false;
     }
     // Of a way to the goal the place matters where a flight would have been stopped.
@@ -168,7 +184,7 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment, FlightStat
     while (rejection_at(at(first)) == Rejection::none) {
         ++first;
     }
-    reject(segment, rejection_at(at(first)), configuration_of(at(first)), counts);
+    reject(segment, rejection_at(at(first)), configuration_of(at(first)), pose_at(at(first)), counts);
     return false;
 }
 
@@ -177,7 +193,7 @@ void PlannedFlights::fly(std::span<FlightJob> jobs) {
     for (const FlightJob& job : jobs) {
         count(job, statistics_);
         if (const FlightLeg* leg = job.rejected_leg()) {
-            reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q), statistics_);
+            reject(*leg, job.world, statistics_);
         }
     }
 }
@@ -310,9 +326,16 @@ void PlannedFlights::fly_in_other_worlds(std::span<FleetJob> jobs) {
 
 /// Counts the rejection of a fleet, if it was rejected.
 void PlannedFlights::reject(const FleetJob& fleet, FlightStatistics& counts) const {
-    if (const FlightLeg* leg = fleet.rejected_leg()) {
-        reject(leg->segment, leg->flight.rejection, configuration_of(leg->end.plant.q), counts);
+    const auto rejected = std::find_if(fleet.jobs.begin(), fleet.jobs.end(),
+                                       [](const FlightJob& job) { return job.rejected_leg() != nullptr; });
+    if (rejected != fleet.jobs.end()) {
+        reject(*rejected->rejected_leg(), rejected->world, counts);
     }
+}
+
+void PlannedFlights::reject(const FlightLeg& leg, const FlownWorld* world, FlightStatistics& counts) const {
+    reject(leg.segment, leg.flight.rejection, configuration_of(leg.end.plant.q),
+           among_obstacles(pose_of(leg.end), world), counts);
 }
 
 bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights& flights) {

@@ -22,6 +22,7 @@ struct FlightStatistics {
     std::uint64_t states_checked = 0;
     std::map<std::string, std::uint64_t> rejected;
     std::uint64_t rejections = 0;
+    StoppedBy stopped_by;
     std::optional<Obstruction> obstruction;  ///< where the rejected way that came nearest to the goal was stopped
 
     FlightStatistics& operator+=(const FlightStatistics& other);
@@ -138,9 +139,12 @@ class PlannedFlights {
     [[nodiscard]] const FlownWorld* world(std::size_t number) const;
     void fly_in(std::span<const std::size_t> worlds, std::span<FleetJob> jobs);
     void reject(const FleetJob& fleet, FlightStatistics& counts) const;
+    /// @param world of its flight; nullptr: the nominal one
+    void reject(const FlightLeg& leg, const FlownWorld* world, FlightStatistics& counts) const;
     static void count(const FlightJob& job, FlightStatistics& counts);
     /// Counts a rejection at a place of a segment.
-    void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at,
+    /// @param pose as the obstacles of its world see it
+    void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at, const PlanarPose& pose,
                 FlightStatistics& counts) const;
 
     const SearchTask& task_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -35,7 +36,13 @@ struct Obstruction {
     std::string cause;           ///< as in SearchRecord::rejected
     Configuration at;            ///< where it was rejected
     double goal_distance_m = 0;  ///< from there to the goal region; 0 inside
+    /// Labels of obstacles (label_of): the one that was nearest where an obstacle is the cause; with the cause
+    /// `closed_plane` those that no way passes.
+    std::vector<std::string> obstacles = {};
 };
+
+/// How many edges each obstacle stopped as a collision, by its number in the problem.
+using StoppedBy = std::map<std::size_t, std::uint64_t>;
 
 /// What became of the candidates of a search: plans that its own model accepts, each cheaper than the best before it.
 struct Candidates {
@@ -60,7 +67,10 @@ struct SearchRecord {
     std::uint64_t states_checked = 0;  ///< collision queries of single states
     std::vector<Improvement> improvements;
     std::map<std::string, std::uint64_t> rejected;  ///< by cause: collision, flyable_area, saturation, ...
-    Candidates candidates;                          ///< what became of plans before one of them was reported
+    /// Edges that collisions stopped, by the label of the nearest obstacle (label_of); of OMPL's planners on lines,
+    /// states and motions.
+    std::map<std::string, std::uint64_t> stopped_by;
+    Candidates candidates;  ///< what became of plans before one of them was reported
 };
 
 /// A node of the tree that a search has grown.

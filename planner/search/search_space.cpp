@@ -6,6 +6,7 @@
 #include <span>
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/search/obstacle_labels.hpp"
 
 namespace downwash::planning {
 
@@ -252,6 +253,14 @@ Rejection SearchSpace::rejection_at(const Configuration& c, double pitch_rad) co
     PlanarPose pose = level_at(c);
     pose.pitch_rad = pitch_rad;
     return model_.collisions().is_nearer_than(pose, margin_m_) ? Rejection::collision : Rejection::none;
+}
+
+bool SearchSpace::is_allowed(const Configuration& configuration, QueryCounts& counts) const {
+    const Rejection rejection = rejection_at(configuration);
+    if (rejection == Rejection::collision) {
+        count_collision(model_, level_at(configuration), margin_m_, counts.stopped_by);
+    }
+    return counts.note(rejection);
 }
 
 double SearchSpace::extent_m() const noexcept {

@@ -6,6 +6,7 @@
 
 #include "downwash/controllers/configuration.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/search/query_counts.hpp"
 #include "downwash/search/random.hpp"
 #include "downwash/simulation/flight.hpp"
 #include "downwash/simulation/flight_model.hpp"
@@ -109,6 +110,9 @@ class SearchSpace {
     [[nodiscard]] bool is_valid(const Configuration& configuration) const {
         return rejection_at(configuration) == Rejection::none;
     }
+
+    /// Whether nothing forbids the level vehicle there; counts the query and what came of it.
+    [[nodiscard]] bool is_allowed(const Configuration& configuration, QueryCounts& counts) const;
 
     /// Which limit a configuration leaves: `bounds`, `arm_limits`, or `none`.
     [[nodiscard]] Rejection limit_left_at(const Configuration& configuration) const noexcept;

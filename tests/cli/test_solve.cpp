@@ -229,6 +229,57 @@ TEST_CASE("Without a solution within the limits the exit code is 1 and nobody sa
     CHECK(solution.at("execution").is_null() == (solution.at("status") == "none"));
 }
 
+TEST_CASE("A scene that closes the plane is told at once, by check too") {
+    const Workspace work;
+    const std::string file = work / "closed.yaml";
+    write_file(file, replaced(problem_text("open_air"), "    - {name: ground",
+                              "    - {name: curtain, box: {size_m: [0.1, 4, 30], center_m: [0, 0, 0]}}\n"
+                              "    - {name: ground"));
+    const auto warnings = work.json("check", file).at("warnings");
+    REQUIRE(warnings.size() == 1);
+    CHECK_THAT(warnings.at(0).at("message"), Contains("goal is out of reach in this plane of motion") &&
+                                                 Contains("get past 'curtain' within the bounds"));
+    const Result result = work.run("solve", file, "--time-limit 1000 --out x");
+    CHECK(result.code == 1);
+    CHECK_THAT(result.out, StartsWith("No way leads to the goal in this plane of motion: 'curtain' closes it.") &&
+                               Contains("closed by         'curtain'"));
+    REQUIRE(work.files("x").size() == files_of_a_run);
+    const auto solution = nlohmann::json::parse(work.files("x").at("solution.json"));
+    CHECK(solution.at("status") == "none");
+    CHECK(solution.at("planning").at("iterations") == 0);
+    const auto& obstruction = solution.at("planning").at("obstruction");
+    CHECK(obstruction.at("cause") == "closed_plane");
+    CHECK(obstruction.at("obstacles") == nlohmann::json{"curtain"});
+}
+
+TEST_CASE("A flight through space that no sensor saw is a warning with its share") {
+    const Workspace work;
+    // Of the highest eighth of the tree the lowest eighth is occupied and the highest is free.
+    write_file(work / "scan.bt", std::string("# Octomap OcTree binary file\nid OcTree\nsize 4\nres 0.1\ndata\n") +
+                                     std::string("\x00\xc0\x02\x40", 4));
+    const std::string file = work / "scanned.yaml";
+    // The free cube begins at x = 0; before it, where the vehicle starts, nothing was seen.
+    write_file(file, replaced(problem_text("open_air"), "    - {name: ground",
+                              "    - {name: scan, octomap: {file: scan.bt, center_m: [-1638.4, -2000, -2000]}}\n"
+                              "    - {name: ground"));
+    const auto found = work.json("check", file);
+    REQUIRE(found.at("geometry").size() == 1);
+    CHECK(found.at("geometry").at(0).at("unknown") == "free");
+    CHECK(found.at("geometry").at(0).at("unseen_share") == 0.75);
+    CHECK_THAT(work.succeed("check", file).out, Contains("75.0 % of its box unseen (free)"));
+    const Result result = work.run("solve", file, "--max-iterations 300 --out x");
+    REQUIRE(result.code == 0);
+    CHECK_THAT(result.err, Contains("a part of the robot is in space of an octree that no sensor saw"));
+    CHECK_THAT(result.out, Contains("unseen space"));
+    const auto solution = nlohmann::json::parse(work.files("x").at("solution.json"));
+    const double share = solution.at("execution").at("unseen_share").get<double>();
+    CHECK(share > 0.2);
+    CHECK(share < 0.9);
+    CHECK(solution.at("warnings").size() == found.at("warnings").size() + 1);
+    const auto again = work.json("execute", file, "--plan x --out y");
+    CHECK(again.at("execution").at("unseen_share") == share);
+}
+
 TEST_CASE("Without obstacles there is no clearance to write, and rotors that lag have a column of their own") {
     const Workspace work;
     write_file(work / "empty.yaml", without_obstacles(problem_text("open_air")));

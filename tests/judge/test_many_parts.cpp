@@ -88,11 +88,12 @@ TEST_CASE("Vertical rays meet parts of every kind where the scene has them") {
     }
     obstacles.push_back(rough_deck(3, 0.3));
     obstacles.push_back({"", Box{{60, 60, 1}}, {0, 0, -3}, {}});
-    obstacles.push_back({"",
-                         octree_of([](const Vector3& p) { return std::hypot(p[0], p[1], p[2]) < 0.4; },
-                                   {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, 0.1),
-                         {0, 0, 2.5},
-                         {0.2, 0.3, 0.4}});
+    Octomap octomap = octree_of([](const Vector3& p) { return std::hypot(p[0], p[1], p[2]) < 0.4; }, {-0.5, -0.5, -0.5},
+                                {0.5, 0.5, 0.5}, 0.1);
+    OccupancyTree tree = *octomap.tree;
+    tree.unseen = {{{2, 1, 0}, {1, 1.5, 0.4}}};
+    octomap = {"", std::make_shared<const OccupancyTree>(std::move(tree)), UnknownSpace::occupied};
+    obstacles.push_back({"", octomap, {0, 0, 2.5}, {0.2, 0.3, 0.4}});
     const Scene scene(obstacles);
     const judge::VerticalRays rays(obstacles, 0.2);
     int different = 0;

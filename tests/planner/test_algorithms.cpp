@@ -102,7 +102,7 @@ TEST_CASE("every algorithm's tree hangs together, from the start on") {
 
 TEST_CASE("no algorithm calls a walled problem solved") {
     for_all([](Variant variant, const AlgorithmInfo& algorithm) {
-        Problem problem = with(variant, algorithm.name, test::walled_problem());
+        Problem problem = with(variant, algorithm.name, test::slit_problem());
         problem.planner.max_iterations = 200;
         const Solution solution = solve(problem);
         CHECK(solution.status != Status::solved);
@@ -194,7 +194,7 @@ TEST_CASE("SST goes on for better plans, whatever the objective") {
 
 TEST_CASE("every algorithm comes to a good end when its time is over") {
     for_all([](Variant variant, const AlgorithmInfo& algorithm) {
-        for (Problem problem : {test::ceiling_problem(), test::walled_problem()}) {
+        for (Problem problem : {test::ceiling_problem(), test::slit_problem()}) {
             problem = with(variant, algorithm.name, problem);
             problem.planner.max_iterations.reset();
             problem.planner.time_limit_s = 0.1;

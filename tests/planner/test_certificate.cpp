@@ -358,7 +358,7 @@ TEST_CASE("A plan that ends at the first of two goals has no certificate") {
     Problem problem = uncertain_problem();
     problem.goals_before = {tip_goal(-1, 4.2)};
     problem.goals_before[0].hold_s = 1;
-    problem.obstacles.push_back(box("wall", {0.3, 8, 5}, {1.5, 0, 2.5}));  // the second goal is behind it
+    add_wall_with_slit(problem, 1.5);  // the second goal is behind it
     problem.planner.max_iterations = 60;
     const Solution solution = solve(problem);
     CHECK(solution.status == Status::approximate);

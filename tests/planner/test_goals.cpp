@@ -339,7 +339,7 @@ TEST_CASE("a tour with a goal behind a wall ends before it and is not called sol
     for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da}) {
         CAPTURE(name_of(variant));
         Problem problem = tour(variant);
-        problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {1.5, 0, 2.5}));
+        test::add_wall_with_slit(problem, 1.5);
         problem.planner.max_iterations = 300;
         const Solution solution = solve(problem);
         CHECK(solution.status == Status::approximate);

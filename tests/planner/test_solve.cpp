@@ -340,7 +340,7 @@ TEST_CASE("rejections are counted by cause") {
         std::function<void(Problem&)> provoke;
     };
     const Provoked all[] = {
-        {"collision", [](Problem& p) { p = test::walled_problem(); }},
+        {"collision", [](Problem& p) { p = test::slit_problem(); }},
         {"flyable_area", [](Problem& p) { p.aero.min_distance_radii = 4; }},
         {"saturation", [](Problem& p) { p.robot.rotors.max_thrust_n = 4.95 * 9.80665 / 4 * 1.02; }},
         {"tracking", [](Problem& p) { test::gains_of(p.robot).max_tilt_rad = 0.01; }},
@@ -374,7 +374,7 @@ TEST_CASE("rejections are counted by cause") {
 }
 
 TEST_CASE("a search without a plan says how near it came and what stopped it") {
-    const Solution walled = solve(test::walled_problem());
+    const Solution walled = solve(test::slit_problem());
     CHECK(walled.status != Status::solved);
     REQUIRE(walled.nearest_approach_m);
     CHECK(*walled.nearest_approach_m > 0.15);  // not beyond the wall, 0.15 m thick on this side
@@ -391,6 +391,54 @@ TEST_CASE("a search without a plan says how near it came and what stopped it") {
     REQUIRE(solved.status == Status::solved);
     CHECK_FALSE(solved.nearest_approach_m);
     CHECK_FALSE(solved.obstruction);
+}
+
+TEST_CASE("the obstacles that stop edges are counted by name, in every variant") {
+    for (const Variant variant : variants) {
+        CAPTURE(name_of(variant));
+        Problem problem = with(variant, test::slit_problem());
+        problem.planner.max_iterations = 200;
+        problem.obstacles.back().name = "";
+        const Solution solution = solve(problem);
+        const auto& stopped_by = solution.planning.stopped_by;
+        CHECK(stopped_by.contains("wall"));
+        CHECK(stopped_by.contains("environment.obstacles[3]"));
+        std::uint64_t sum = 0;
+        for (const auto& [obstacle, count] : stopped_by) {
+            sum += count;
+        }
+        CHECK(sum <= solution.planning.rejected.at("collision"));  // which counts samples, too
+        REQUIRE(solution.obstruction);
+        REQUIRE(solution.obstruction->obstacles.size() == 1);
+        CHECK(stopped_by.contains(solution.obstruction->obstacles.front()));
+    }
+    Problem lines = with(Variant::mp_arm, test::slit_problem());
+    lines.planner.algorithm = "rrt-connect";
+    CHECK(solve(lines).planning.stopped_by.contains("wall"));
+}
+
+TEST_CASE("a scene that closes the plane is told at once, with the obstacles that do") {
+    for (const Variant variant : variants) {
+        CAPTURE(name_of(variant));
+        const Solution solution = solve(with(variant, test::walled_problem()));
+        CHECK(solution.status == Status::none);
+        CHECK_FALSE(solution.plan);
+        CHECK(solution.planning.iterations == 0);
+        REQUIRE(solution.obstruction);
+        CHECK(solution.obstruction->cause == "closed_plane");
+        CHECK(solution.obstruction->obstacles == std::vector<std::string>{"wall"});
+    }
+    Problem several = test::walled_problem();
+    several.goals_before = {test::tip_goal(-3, 4)};
+    CHECK(solve(several).missed_goal == std::optional<std::size_t>(2));
+    several.targets = {test::tip_goal(3, 4), test::tip_goal(4, 3)};
+    several.goals_before.clear();
+    several.goal = {};
+    const Solution none = solve(several);
+    REQUIRE(none.order);
+    CHECK(none.order->visits.empty());
+    CHECK(none.order->left_out.size() == 2);
+    CHECK(none.planning.iterations == 0);
 }
 
 TEST_CASE("a map of another scene, vehicle, model or place is refused") {

@@ -107,7 +107,8 @@ TEST_CASE("errors of a foreign file stand where the problem names it, with their
           "problem.yaml:8:20: environment.obstacles[1].mesh.file is missing: expected the path of a file");
     CHECK(errors_with(folder, "octomap: {file: pole.bt, scale: 2}") ==
           "problem.yaml:8:36: environment.obstacles[1].octomap.file 'pole.bt' cannot be read: there is no such file\n"
-          "problem.yaml:8:45: unknown key 'scale' in environment.obstacles[1].octomap: expected file, center_m or "
+          "problem.yaml:8:45: unknown key 'scale' in environment.obstacles[1].octomap: expected file, unknown, "
+          "center_m or "
           "rpy_deg");
 }
 
@@ -318,6 +319,47 @@ TEST_CASE("a unit, an axis or a place that takes a mesh away is a warning with t
     folder.write("scan.bt", cube_bt);
     CHECK_THAT(shape_warnings(folder, "octomap: {file: scan.bt, center_m: [0, 9000, 0]}").at(0),
                Contains("octomap.file is 3277 m long") && Contains("wholly outside") && !Contains("scale:"));
+}
+
+TEST_CASE("unseen space of an octree is free or occupied, and free space is warned of") {
+    const TestFolder folder;
+    // Of the highest eighth's eighths the first is occupied and the last is free: cubes of 1638.4 m.
+    folder.write("scan.bt", std::string("# Octomap OcTree binary file\nid OcTree\nsize 4\nres 0.1\ndata\n") +
+                                std::string("\x00\xc0\x02\x40", 4));
+    const auto octomap_with = [&folder](const std::string& keys) {
+        return read_with(folder, "octomap: {file: scan.bt, center_m: [0, 0, -4000]" + keys + "}");
+    };
+    const Problem plain = octomap_with("");
+    const Problem free = octomap_with(", unknown: free");
+    const Problem filled = octomap_with(", unknown: occupied");
+    CHECK(std::get<Octomap>(plain.obstacles.at(1).shape).unknown == UnknownSpace::free);
+    CHECK(std::get<Octomap>(filled.obstacles.at(1).shape).unknown == UnknownSpace::occupied);
+    CHECK(problem_sha256(plain) == problem_sha256(free));
+    CHECK(problem_sha256(plain) != problem_sha256(filled));
+    CHECK_THAT(effective_yaml(filled, folder / "."), Catch::Contains("unknown: occupied"));
+    CHECK(Scene(plain.obstacles).bounds(1).high_m[0] == Approx(1638.4));
+    CHECK(Scene(filled.obstacles).bounds(1).high_m[0] == Approx(3276.8));
+    CHECK_THAT(errors_with(folder, "octomap: {file: scan.bt, unknown: solid}"),
+               Catch::Contains("expected free or occupied"));
+
+    const auto is_of_unseen = [](const std::string& warning) { return warning.find("unknown:") != std::string::npos; };
+    const auto warnings_of = [&](const std::string& keys) {
+        std::string text;
+        for (const std::string& each :
+             shape_warnings(folder, "octomap: {file: scan.bt, center_m: [0, 0, -4000]" + keys + "}")) {
+            text += is_of_unseen(each) ? each : "";
+        }
+        return text;
+    };
+    CHECK_THAT(warnings_of(""), Catch::Contains("octomap.file") && Catch::Contains("has no leaf in 75 % of"));
+    CHECK(warnings_of(", unknown: occupied").empty());
+    folder.write("scan.bt", cube_bt);  // all of its box is one leaf
+    CHECK(warnings_of("").empty());
+    CHECK(warnings_of(", unknown: occupied").empty());
+    folder.write("scan.bt", std::string("# Octomap OcTree binary file\nid OcTree\nsize 3\nres 0.1\ndata\n") +
+                                std::string("\x02\x80", 2));
+    CHECK(warnings_of("").empty());  // no free leaf: nobody knows what was seen
+    CHECK_THAT(warnings_of(", unknown: occupied"), Catch::Contains("has no free leaf"));
 }
 
 TEST_CASE("a problem that is written elsewhere finds its files again, and is the same problem") {

@@ -132,4 +132,9 @@ TEST_CASE("a sheet is cut in an open line, an octree cube by cube") {
     CHECK(cubes.rings.size() == 2);
     CHECK(area(cubes) == Approx(0.25 + 1));
     CHECK_FALSE(outline_of(Octomap{"", tree}, {0, 20, 0}).is_cut);
+    OccupancyTree scan = *tree;
+    scan.unseen = {{{0, 0, 6}, {2, 0.5, 3}}};
+    const auto scanned = std::make_shared<const OccupancyTree>(std::move(scan));
+    CHECK(area(outline_of(Octomap{"", scanned})) == Approx(0.25 + 1));
+    CHECK(area(outline_of(Octomap{"", scanned, UnknownSpace::occupied})) == Approx(0.25 + 1 + 6));
 }

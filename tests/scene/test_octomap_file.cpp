@@ -127,6 +127,60 @@ TEST_CASE("What OctoMap writes is read as OctoMap holds it") {
     }
 }
 
+TEST_CASE("What no leaf covers in the box of all leaves is unseen, as OctoMap has it") {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        CAPTURE(seed);
+        Random random(seed);
+        octomap::OcTree tree(0.125);
+        fill(tree, random);
+        std::stringstream full;
+        tree.write(full);
+        const OccupancyTree found = parse_octomap(full.str(), "a.ot");
+        CHECK(found.has_free_leaf);
+        CHECK(found.lists_unseen);
+        double known_m3 = 0;
+        Vector3 low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9};
+        for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+            const octomap::OcTreeKey key = leaf.getIndexKey();
+            const double side_m = leaf.getSize();
+            known_m3 += side_m * side_m * side_m;
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                const double middle_m = tree.keyToCoord(key[axis], leaf.getDepth());
+                low[axis] = std::min(low[axis], middle_m - side_m / 2);
+                high[axis] = std::max(high[axis], middle_m + side_m / 2);
+            }
+        }
+        const LocalBox& box = found.known_box;
+        CHECK(box.center_m - 0.5 * box.size_m == low);
+        CHECK(box.center_m + 0.5 * box.size_m == high);
+        const double box_m3 = box.size_m[0] * box.size_m[1] * box.size_m[2];
+        double unseen_m3 = 0;
+        for (const LocalBox& each : found.unseen) {
+            unseen_m3 += each.size_m[0] * each.size_m[1] * each.size_m[2];
+        }
+        CHECK(unseen_m3 == Approx(box_m3 - known_m3));
+        CHECK(found.unseen_share == Approx(unseen_m3 / box_m3));
+        for (int i = 0; i < 2000; ++i) {
+            Vector3 p{};
+            for (unsigned axis = 0; axis < 3; ++axis) {
+                p[axis] = random.uniform(low[axis], high[axis]);
+            }
+            const bool is_unseen = std::any_of(found.unseen.begin(), found.unseen.end(), [&p](const LocalBox& each) {
+                const Vector3 d = p - each.center_m;
+                return std::abs(d[0]) < each.size_m[0] / 2 && std::abs(d[1]) < each.size_m[1] / 2 &&
+                       std::abs(d[2]) < each.size_m[2] / 2;
+            });
+            REQUIRE(is_unseen == (tree.search(p[0], p[1], p[2]) == nullptr));
+        }
+        std::stringstream binary;
+        tree.writeBinary(binary);
+        CHECK(parse_octomap(binary.str(), "a.bt").unseen_share == found.unseen_share);
+    }
+    const OccupancyTree tree = parse_octomap(sound(), "a.bt");
+    // An eighth, and an eighth of the one across, whose lower half along y the box ends with.
+    CHECK(tree.unseen_share == Approx(1 - (1.0 + 1.0 / 8) / (2 * 1.5 * 2)));
+}
+
 TEST_CASE("An octree with colours is read as the same one without them") {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         CAPTURE(seed);

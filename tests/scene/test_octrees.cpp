@@ -13,6 +13,8 @@ using namespace downwash;
 
 namespace {
 
+using Cubes = std::vector<OccupiedCube>;
+
 /// Cubes of 0.25 m and 0.5 m on their grids, about half of the places taken.
 OccupancyTree some_tree(reference::Dice& dice) {
     OccupancyTree tree{0.25, {}};
@@ -81,19 +83,19 @@ TEST_CASE("Octrees that cannot stand in a scene are errors with their place") {
 TEST_CASE("Cubes that fill a block become one box, twice the same cube is one") {
     const Octomap block = test::octree_of([](const Vector3&) { return true; }, {-1, 0.5, 2}, {1, 2, 3.5}, 0.25);
     REQUIRE(block.tree->cubes.size() == 8 * 6 * 6);
-    std::vector<LocalBox> boxes = merged_boxes(*block.tree);
+    std::vector<LocalBox> boxes = merged_boxes(block.tree->cubes);
     REQUIRE(boxes.size() == 1);
     CHECK(boxes[0].center_m == Vector3{0, 1.25, 2.75});
     CHECK(boxes[0].size_m == Vector3{2, 1.5, 1.5});
-    CHECK(merged_boxes({1, {{{0.5, 0.5, 0.5}, 1}, {{0.5, 0.5, 0.5}, 1}}}).size() == 1);
-    CHECK(merged_boxes({1, {{{0.5, 0.5, 0.5}, 1}, {{1.6, 0.5, 0.5}, 1}}}).size() == 2);
+    CHECK(merged_boxes(Cubes{{{0.5, 0.5, 0.5}, 1}, {{0.5, 0.5, 0.5}, 1}}).size() == 1);
+    CHECK(merged_boxes(Cubes{{{0.5, 0.5, 0.5}, 1}, {{1.6, 0.5, 0.5}, 1}}).size() == 2);
 }
 
 TEST_CASE("Boxes fill exactly what the cubes fill") {
     reference::Dice dice(41);
     for (int round = 0; round < 40; ++round) {
         const OccupancyTree tree = some_tree(dice);
-        const std::vector<LocalBox> boxes = merged_boxes(tree);
+        const std::vector<LocalBox> boxes = merged_boxes(tree.cubes);
         REQUIRE(boxes.size() <= tree.cubes.size());
         for (int i = 0; i < 2000; ++i) {
             const Vector3 p = dice.vector(-1.6, 1.6);
@@ -123,4 +125,31 @@ TEST_CASE("An octree is as near as all of its cubes one by one") {
         }
     }
     CHECK(contacts < 1000);
+}
+
+TEST_CASE("Unseen space is solid where it counts as occupied, and a scene of its own where it is free") {
+    OccupancyTree tree{0.5, {{{0.25, 0.25, 0.25}, 0.5}}, {{{2, 0, 1}, {1, 3, 2}}}, {}, 0.5, true};
+    Octomap octomap = octomap_of(tree);
+    const Obstacle ground{"ground", Box{{1, 1, 1}}, {0, 0, -9}, {}};
+    const Scene free({ground, {"scan", octomap, {1, 0, 0}, {}}});
+    octomap.unknown = UnknownSpace::occupied;
+    const Scene filled({ground, {"scan", octomap, {1, 0, 0}, {}}});
+    CHECK(free.part_count() == 2);
+    CHECK(free.bounds(1).high_m[0] == 1.5);
+    REQUIRE(filled.part_count() == 3);
+    CHECK(filled.bounds(1).high_m[0] == 3.5);
+    CHECK(filled.vertical_extent(2, 3, 0).high == 2);
+    CHECK(filled.obstacle_of(0) == 0);
+    CHECK(filled.obstacle_of(2) == 1);
+    CHECK(filled.unseen_space() == nullptr);
+    const std::shared_ptr<const Scene> unseen = free.unseen_space();
+    REQUIRE(unseen != nullptr);
+    CHECK(unseen->part_count() == 1);
+    CHECK(unseen->bounds(0).low_m == Vector3{2.5, -1.5, 0});
+    CHECK(unseen->bounds(0).high_m == Vector3{3.5, 1.5, 2});
+    tree.has_free_leaf = false;  // then nobody knows what a sensor saw
+    CHECK(Scene({{"", octomap_of(tree), {}, {}}}).unseen_space() == nullptr);
+    octomap = octomap_of({0.5, tree.cubes, {}, {}, 0.5, true, false});
+    octomap.unknown = UnknownSpace::occupied;
+    CHECK_THAT(error_in(octomap), Catch::Contains("obstacles[0].octomap.unknown: is occupied, and the unseen space"));
 }

@@ -65,6 +65,38 @@ TEST_CASE("an execution that is over before its end is no execution") {
     CHECK(questions > 100);
 }
 
+TEST_CASE("an executed flight counts its ticks in space that no sensor saw") {
+    Problem problem = test::with_place(2, 2.5);
+    const auto knots = from_start(problem, {2, 2.5, 1}, 1300);
+    CHECK_FALSE(flown(problem, knots).unseen_share);
+    // A cube far away; beyond x = 0 nothing was seen.
+    OccupancyTree tree{1, {{{0, 50.5, 0.5}, 1}}, {{{10, 0, 5}, {20, 8, 20}}}, {}, 0.5, true};
+    const auto with_octree = [&](UnknownSpace unknown) {
+        Problem scanned = problem;
+        scanned.obstacles.push_back(
+            {"scan", Octomap{"", std::make_shared<const OccupancyTree>(tree), unknown}, {}, {}});
+        return flown(scanned, knots);
+    };
+    const Execution free = with_octree(UnknownSpace::free);
+    CHECK(free.outcome == Outcome::ok);
+    const double reach_m = make_flight_model(problem)->collisions().robot_reach_m();
+    const auto beyond = [&](double x_m) {
+        const auto count =
+            std::count_if(free.rows.begin(), free.rows.end(), [x_m](const FlightRow& row) { return row.q[0] >= x_m; });
+        return static_cast<double>(count) / static_cast<double>(free.rows.size());
+    };
+    REQUIRE(free.unseen_share);
+    CHECK(*free.unseen_share >= beyond(0));  // the centre is in it, or another part of the robot
+    CHECK(*free.unseen_share <= beyond(-reach_m));
+    CHECK(beyond(0) > 0.3);
+    CHECK(beyond(-reach_m) < 0.95);
+    const Execution filled = with_octree(UnknownSpace::occupied);
+    CHECK(filled.outcome != Outcome::ok);
+    CHECK_FALSE(filled.unseen_share);
+    tree.has_free_leaf = false;
+    CHECK_FALSE(with_octree(UnknownSpace::free).unseen_share);
+}
+
 TEST_CASE("a reference through a wall ends in a collision, or before it where a rotor disc leaves the flyable area") {
     Problem problem = test::walled_problem();
     problem.goal = test::configuration_goal(2, 2);

@@ -91,6 +91,21 @@ inline Problem walled_problem() {
     return problem;
 }
 
+/// Adds a wall from ground to ceiling with a slit that no vehicle with a margin passes. A disc that the body contains
+/// at every pitch would pass it, so that searches are not told beforehand that there is no way.
+inline void add_wall_with_slit(Problem& problem, double x_m) {
+    problem.obstacles.push_back(box("wall", {0.3, 8, 2.425}, {x_m, 0, 1.2125}));
+    problem.obstacles.push_back(box("upper wall", {0.3, 8, 2.425}, {x_m, 0, 3.7875}));
+}
+
+/// The ceiling problem with such a wall between start and goal.
+inline Problem slit_problem() {
+    Problem problem = ceiling_problem();
+    problem.name = "slit";
+    add_wall_with_slit(problem, 0);
+    return problem;
+}
+
 /// The ceiling problem with what is not known, and a controller that bears it.
 inline Problem uncertain_problem() {
     Problem problem = ceiling_problem();

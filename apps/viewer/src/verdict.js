@@ -43,6 +43,15 @@ function is_of_part({solution: {planning, certificate, execution}}) {
     return (cause === "certificate" || cause === "unfinished_certificate") && (!certificate || planning.goal < goals);
 }
 
+/** Names of obstacles as a list of words. */
+function quoted(names) {
+    const words = names.map((name) => `'${name}'`);
+    return words.length > 1 ? `${words.slice(0, -1).join(", ")} and ${words.at(-1)}` : words.join("");
+}
+
+/** The name with the greatest count, and the count. */
+const most_of = (counts) => Object.entries(counts ?? {}).sort((a, b) => b[1] - a[1])[0] ?? ["", 0];
+
 /** What blocked a search without a plan. */
 function blocked_lines(model) {
     const {solution, outcome} = model;
@@ -55,6 +64,10 @@ function blocked_lines(model) {
     const lines = [];
     if (interrupted) {
         lines.push("The search was interrupted.");
+    }
+    if (stop?.cause === "closed_plane") {
+        return [...lines, `${quoted(stop.obstacles ?? [])} ${(stop.obstacles ?? []).length === 1 ? "closes" : "close"} ` +
+            `every way to ${goal} within the bounds: the vehicle does not get past at any pitch or arm angle.`];
     }
     if (status === "approximate" && outcome === "ok" && (solution.order?.left_out ?? []).length > 0) {
         return [...lines, "No flight was found to some targets. The page shows one to the others, which counts as no solution."];
@@ -85,12 +98,17 @@ function blocked_lines(model) {
             `The planner discarded every plan to ${goal}: in worlds that the search had not seen, each failed too often.`);
     } else if (stop) {
         lines.push(
-            `The planner rejected the nearest path into ${region} because it ${cause_text(stop.cause)}, ` +
+            `The planner rejected the nearest path into ${region} because it ${cause_text(stop.cause)}` +
+            `${stop.obstacles?.length > 0 ? ` (${quoted(stop.obstacles)})` : ""}, ` +
             `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}, ` +
             `${place(stop.goal_distance_m)} from ${region}.`);
     }
+    const [obstacle, stopped] = most_of(planning?.stopped_by);
+    if (stopped > 0) {
+        lines.push(`${quoted([obstacle])} stopped most edges that collided: ${number(stopped, ",d")}.`);
+    }
     if (lines.length === 0) {
-        const [cause, count] = Object.entries(planning?.rejected ?? {}).sort((a, b) => b[1] - a[1])[0] ?? ["", 0];
+        const [cause, count] = most_of(planning?.rejected);
         const times = `${number(count, ",d")} ${count === 1 ? "time" : "times"}`;
         lines.push(
             count > 0 ? `The most frequent reason for rejection: the flight ${cause_text(cause)}, ${times}.` :
@@ -110,7 +128,8 @@ export function verdict_of(model) {
     if (solution.status !== "solved") {
         const title = solution.status === "approximate" && solution.certificate && !is_of_part(model) ?
             "A plan was found, but it is not certified" :
-            "No plan within the limits";
+            solution.planning?.obstruction?.cause === "closed_plane" ? "No way leads to the goal in this plane" :
+                                                                       "No plan within the limits";
         return {kind: "none", mark: "∅", title, lines: blocked_lines(model)};
     }
     const stopped = solution.interrupted ? "Interrupted; the best so far. " : "";
@@ -164,6 +183,9 @@ function figures_of(model) {
         if (execution.contact) {
             add("Contact force", quantity(execution.contact.force_n, ".2f", "N"),
                 `off by ${quantity(execution.contact.force_error_n, ".2f", "N")} at most`);
+        }
+        if (Number.isFinite(execution.unseen_share)) {
+            add("Unseen space", `${number(100 * execution.unseen_share, ".1f")} %`, "of the flight's ticks");
         }
         add("Max. tracking error", meters(execution.max_tracking_error_m), "position");
         add("Saturation", number(execution.max_saturation, ".2f"),

@@ -3,6 +3,7 @@
 export const causes = {
     arm_limits: "moves the arm beyond its limits",
     bounds: "leaves the bounds",
+    closed_plane: "finds no way in this plane",
     certificate: "fails too often in worlds that the search has not seen",
     collision: "touches an obstacle",
     direct_flight: "fails when executed with direct aerodynamics",
