@@ -150,6 +150,12 @@ Bounds shown_extent(const RunRecord& run, const Flight& flight) {
     return extent;
 }
 
+/// A name as it stands beside its point: the number alone, which needs little room.
+std::string short_name(const std::string& name) {
+    const std::string last = name.substr(name.rfind(' ') + 1);
+    return last.find_first_not_of("0123456789") == std::string::npos ? last : name;
+}
+
 /// The goals that are a point of the plane; several in turn with their numbers.
 std::vector<FigurePoints> goal_points(const Problem& problem, const std::vector<std::string>& names) {
     FigurePoints goals{"goal of the end effector", {}, goal_color};
@@ -163,7 +169,7 @@ std::vector<FigurePoints> goal_points(const Problem& problem, const std::vector<
             }
             goals.points.push_back({drawing.x_m.value(), drawing.z_m.value()});
             if (names.size() > 1) {
-                goals.labels.push_back(name);
+                goals.labels.push_back(short_name(name));
             }
         }
     }
