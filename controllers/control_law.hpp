@@ -23,7 +23,7 @@ using ControlLaw = std::variant<ModelInversion, CascadedPid, PlanarLyapunov>;
 /// The controller of a robot.
 struct Controller {
     double rate_hz = 100;  ///< control ticks per second; a command is held over one tick
-    double delay_s = 0;    ///< age of the state that the law sees, at most three ticks; linear between ticks
+    double delay_s = 0;    ///< age of the state that the law sees, at most 64 ticks; linear between ticks
     ControlLaw law;
 };
 

@@ -25,13 +25,13 @@ World without_noise(World world) noexcept {
 }
 
 Sensors::Sensors(const World& world, const Robot& robot, const Motion& now)
-    : world_(world), delay_ticks_((robot.controller.delay_s + world.delay_s) * robot.controller.rate_hz) {
-    past_.fill(now);
-}
+    : world_(world),
+      delay_ticks_((robot.controller.delay_s + world.delay_s) * robot.controller.rate_hz),
+      past_(static_cast<std::size_t>(delay_ticks_) + 1, now) {}
 
 Motion Sensors::seen(const Motion& now, const Tape& tape) const {
     const auto ago = [&](std::size_t ticks) -> const Motion& {
-        return ticks == 0 ? now : past_[std::min(ticks, kept) - 1];
+        return ticks == 0 ? now : past_[std::min(ticks, past_.size()) - 1];
     };
     const double whole = std::floor(delay_ticks_);
     const double share = delay_ticks_ - whole;

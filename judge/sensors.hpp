@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "downwash/judge/equations_of_motion.hpp"
 #include "downwash/simulation/noise.hpp"
@@ -34,11 +35,9 @@ class Sensors {
     void remember(const Motion& now);
 
  private:
-    static constexpr std::size_t kept = 3;
-
     const World& world_;
     double delay_ticks_;
-    std::array<Motion, kept> past_;  ///< one tick ago, two ticks ago, ...
+    std::vector<Motion> past_;  ///< one tick ago, two ticks ago, ...
 };
 
 /// Gusts of the Dryden model, sampled at the control ticks.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "downwash/planner/world_flights.hpp"
@@ -68,7 +67,8 @@ const FlightState& state_at_leg(const FlightJob& job, std::size_t legs) {
 }
 
 bool are_same(const std::vector<FlightState>& a, const std::vector<FlightState>& b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(FlightState)) == 0;
+    return std::ranges::equal(a, b,
+                              [](const FlightState& one, const FlightState& other) { return is_same(one, other); });
 }
 
 /// A hover there: it may be a little beside it, but has to come to rest.

@@ -18,6 +18,17 @@ struct ExecutionWorld {
     std::uint64_t seed = 0;
 };
 
+/// How a plan takes over from an earlier one, whose vehicle is in the air.
+struct Replanned {
+    std::string plan;                    ///< file of the earlier plan, as the user gave it
+    std::int64_t tick = 0;               ///< of that plan, with which this one begins
+    double t_s = 0;                      ///< the same as a time
+    Outcome rest_outcome = Outcome::ok;  ///< of the rest of that plan from there, in the problem as it is now
+    double rest_cost = 0;                ///< its cost in that flight
+    std::optional<double>
+        same_reference_s;  ///< so long this plan's reference is that of the rest; empty without a plan
+};
+
 /// The answer to a problem: what was found, how the search went, and the settings that it was asked with.
 struct Solution : Found {
     bool interrupted = false;  ///< ended by the stop token
@@ -30,6 +41,7 @@ struct Solution : Found {
     SearchRecord planning;
     std::shared_ptr<const AeroMap> map;  ///< map of the problem, for SolveOptions::map of another; empty: none
     std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one
+    std::optional<Replanned> replanned;             ///< empty: the plan begins on its own
 };
 
 }  // namespace downwash

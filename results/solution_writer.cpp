@@ -249,6 +249,14 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"execution", execution_json(solution)},
         {"files", files},
     };
+    if (solution.replanned) {
+        const Replanned& from = *solution.replanned;
+        document["replanned"] = {{"plan", from.plan},
+                                 {"t_s", from.t_s},
+                                 {"tick", from.tick},
+                                 {"rest", {{"outcome", name_of(from.rest_outcome)}, {"cost", number(from.rest_cost)}}},
+                                 {"same_reference_s", from.same_reference_s ? number(*from.same_reference_s) : Json()}};
+    }
     if (solution.order) {
         document["order"] = order_json(*solution.order);
     }

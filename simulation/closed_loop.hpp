@@ -121,18 +121,17 @@ template <bool may_have_wash, class T, class Law, EffectField<T> Field, class In
 /// One control tick in a world that differs from the nominal one; every lane may have a world of its own. In the
 /// nominal world it is tick() to the last bit.
 /// @param noise standard normal numbers of this tick   @param integrate see tick()
+/// @param[out] next not the state itself
 template <class T, class Law, EffectField<T> Field, class Integrate = dynamics::OneStep>
-State<T> tick_in_world(const TickModel& model, const Law& law, const WorldNumbers<T>& world, const T noise[noise_count],
-                       const State<T>& state, const BasicReferencePoint<T>& reference, Field& field,
-                       controllers::Actuation<T>& given, const Integrate& integrate = {}) {
+void tick_in_world(const TickModel& model, const Law& law, const WorldNumbers<T>& world, const T noise[noise_count],
+                   const State<T>& state, const BasicReferencePoint<T>& reference, Field& field,
+                   controllers::Actuation<T>& given, State<T>& next, const Integrate& integrate = {}) {
     const BasicPlantModel<T> plant = plant_in(model, world);
     const dynamics::PlantState<T> seen = seen_state(world, state.plant, state.world, noise);
     dynamics::Attitude<T> attitude = dynamics::attitude(plant, state.plant.q[2], state.plant.q[3]);
-    State<T> next;
-    move_in_world<true>(model, law, world, plant, seen, wind_in(world, state.world), state, attitude, reference, field,
-                        given, next, integrate);
-    next.world = later(world, state.plant, state.world, noise);
-    return next;
+    move_in_world<true>(model, law, world, plant, seen, wind_in(world, state.world.gust), state, attitude, reference,
+                        field, given, next, integrate);
+    pass_tick(world, state.plant, state.world, noise, next.world);
 }
 
 }  // namespace downwash::simulation

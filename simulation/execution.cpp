@@ -416,7 +416,7 @@ FlightPart execute_part(const FlightModel& model, const FlightState& start, std:
         }
         rejection = fly_directly(model, world, in.first_tick, segment, *effect, is_over, state, recorder);
     }
-    return {rejection, part.min_clearance_m};
+    return {rejection, part.min_clearance_m, std::move(state)};
 }
 
 std::optional<FlightState> hovering_start(const FlightModel& model, const FlightState& start, bool aero,

@@ -116,6 +116,7 @@ struct Execution : FlightSums {
 struct FlightPart {
     Rejection rejection = Rejection::none;
     double min_clearance_m = 0;  ///< up to its end; infinity without obstacles
+    FlightState end{};           ///< vehicle at its end
 };
 
 /// Flies some segments one after the other under the rules of execute(), goals aside.

@@ -110,10 +110,15 @@ struct FlightPool::Impl {
     /// Flies jobs until none is left. Several threads may call it at once.
     void work() {
         FlightLanes lanes{};
+        const int track_ticks = kernel_model.track_ticks;
+        std::vector<simulation::TrackRow> track(
+            track_ticks > 0 ? static_cast<std::size_t>(track_ticks + simulation::max_track_ticks) : 0);
+        std::fill(std::begin(lanes.track), std::end(lanes.track), track.data());
+        const int max_ticks = track_ticks > 0 ? simulation::max_track_ticks : max_ticks_per_call;
         std::vector<FlightLane> flights;
         flights.reserve(lane_count);
         for (int i = 0; i < lane_count; ++i) {
-            flights.emplace_back(setting, lanes, i);
+            flights.emplace_back(setting, lanes, i, simulation::LaneTrack{track.data(), track_ticks});
         }
         std::fill(std::begin(lanes.flights), std::end(lanes.flights), &flights);
         for (;;) {
@@ -130,7 +135,7 @@ struct FlightPool::Impl {
                     lane.idle_like(flights.front());
                 }
             }
-            (busy > few_lanes ? kernels.for_many : kernels.for_few)(kernel_model, lanes, max_ticks_per_call);
+            (busy > few_lanes ? kernels.for_many : kernels.for_few)(kernel_model, lanes, max_ticks);
             const bool is_interrupted = rules.is_over && rules.is_over();
             for (FlightLane& lane : flights) {
                 if (!lane.is_free()) {
@@ -279,6 +284,14 @@ void FlightPool::Impl::fly(std::span<FlightJob> all_jobs, std::span<FlightChain*
                                         : simulation::TickKind::nominal;
     kernel_model.has_noise = std::any_of(
         jobs.begin(), jobs.end(), [&](const FlightJob& job) { return job.world != nullptr && job.world->has_noise; });
+    double longest_delay_ticks = kernel_model.delay_ticks;
+    for (const FlightJob& job : jobs) {
+        if (job.world != nullptr) {
+            longest_delay_ticks = std::max(longest_delay_ticks, job.world->numbers.delay_ticks);
+        }
+    }
+    const auto older = static_cast<int>(simulation::older_ticks(longest_delay_ticks));
+    kernel_model.track_ticks = older > 0 ? simulation::recent_ticks + older : 0;
     // One lane takes as long as two: two flights are not worth waking other threads.
     const std::size_t count = jobs.size() + chains.size();
     const std::size_t asked = count <= 2 ? 0 : allowed.load();

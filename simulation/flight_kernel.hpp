@@ -18,6 +18,14 @@ inline constexpr int lane_count = 8;
 template <class Struct>
 using LaneRows = double[sizeof(Struct) / sizeof(double)][lane_count];
 
+/// Where the vehicles of all lanes were at one tick.
+struct alignas(64) TrackRow {
+    LaneRows<PastMotion<double>> motion;
+};
+
+/// A call of the kernel that follows tracks flies at most so many ticks.
+inline constexpr int max_track_ticks = 128;
+
 /// Everything about the edges that changes, as structure of arrays; [..][lane].
 struct alignas(64) FlightLanes {
     LaneRows<VehicleState<double>> state;
@@ -52,6 +60,9 @@ struct alignas(64) FlightLanes {
     double is_unclear[lane_count];
 
     void* flights[lane_count];  ///< for LookAround; the same in every lane
+    /// Where the vehicles were at the last FlightKernelModel::track_ticks ticks, the oldest first, and room for
+    /// max_track_ticks more; the same in every lane.
+    TrackRow* track[lane_count];
 };
 
 /// Looks around lanes, given as bits, for which a check is due: sets how far each may fly until the next one, or the
@@ -75,6 +86,7 @@ struct FlightKernelModel {
     RotorMaps maps;      ///< see no_rotor_maps()
     double delay_ticks;  ///< age of what the controller sees in the nominal world
     bool keeps_past;     ///< whether flights in the nominal world remember where they were
+    int track_ticks;     ///< ticks that the longest delay reaches back, where that is beyond recent_ticks; else 0
     TickKind kind;
     bool has_noise;  ///< whether some world has noise
     const float* normal_levels;
@@ -82,8 +94,8 @@ struct FlightKernelModel {
 };
 
 /// Flies all lanes tick by tick until an active one breaks a rule, stays unclear, or is at the end of its segment, or
-/// until so many ticks have passed or lanes have looked around some times. Every lane's numbers are those of
-/// simulation::FlightLoop to the last bit.
+/// until so many ticks have passed (see max_track_ticks) or lanes have looked around some times. Every lane's numbers
+/// are those of simulation::FlightLoop to the last bit.
 using FlightKernel = void (*)(const FlightKernelModel& model, FlightLanes& lanes, int max_ticks);
 
 // For each set of instructions the kernel of a control law, by its number in FlownLaw. Those that are left out of a

@@ -108,19 +108,37 @@ inline void draw_noises(const FlightKernelModel& model, const LaneGroup& group, 
     }
 }
 
-/// Where the lanes' vehicles were at the last ticks, as a ring: nothing moves when a tick has passed.
+/// Where the lanes' vehicles were at the last ticks, as a ring: nothing moves when a tick has passed. Older motions,
+/// for long delays, stay in the lanes' track.
 class PastMotions {
  public:
+    PastMotions(const FlightKernelModel& model, const LaneGroup& group)
+        : group_(group), track_ticks_(model.track_ticks) {}
+
     void read(const WorldMemory<Pack>& memory) {
         now_ = 0;
-        for (int age = 1; age <= max_delay_ticks; ++age) {
+        for (int age = 1; age <= recent_ticks; ++age) {
             past_[-age & mask] = memory.past[age - 1];
         }
     }
-    /// @param age in ticks, from 1 to max_delay_ticks
-    [[nodiscard]] const PastMotion<Pack>& at(int age) const { return past_[(now_ - age) & mask]; }
+    /// @param age in ticks, from 1 to recent_ticks, or to the model's track_ticks
+    /// @return for more than recent_ticks: until it is asked again
+    [[nodiscard]] const PastMotion<Pack>& at(int age) {
+        if (age <= recent_ticks) {
+            return past_[(now_ - age) & mask];
+        }
+        group_.load(row(passed_ - age).motion, old_);
+        return old_;
+    }
     /// A tick has passed. @param then the state at its beginning
     void pass(const dynamics::PlantState<Pack>& then) {
+        if (track_ticks_ > 0) {
+            TrackRow& now = row(passed_++);
+            for (int i = 0; i < 4; ++i) {
+                group_.store(then.q[i], now.motion[i]);
+                group_.store(then.u[i], now.motion[4 + i]);
+            }
+        }
         PastMotion<Pack>& past = past_[now_];
         for (int i = 0; i < 4; ++i) {
             past.q[i] = then.q[i];
@@ -129,15 +147,27 @@ class PastMotions {
         now_ = (now_ + 1) & mask;
     }
     void write(WorldMemory<Pack>& memory) const {
-        for (int age = 1; age <= max_delay_ticks; ++age) {
-            memory.past[age - 1] = at(age);
+        for (int age = 1; age <= recent_ticks; ++age) {
+            memory.past[age - 1] = past_[(now_ - age) & mask];
+        }
+        for (int i = 0; i < track_ticks_; ++i) {
+            PastMotion<Pack> motion;
+            group_.load(row(passed_ - track_ticks_ + i).motion, motion);
+            group_.store(motion, row(i - track_ticks_).motion);
         }
     }
 
  private:
+    /// @param tick since read(); negative before
+    [[nodiscard]] TrackRow& row(int tick) const { return group_.lanes.track[0][track_ticks_ + tick]; }
+
     static constexpr int mask = 3;
-    static_assert(max_delay_ticks <= mask);
+    static_assert(recent_ticks <= mask);
+    const LaneGroup& group_;
+    int track_ticks_;
+    int passed_ = 0;  ///< ticks since read()
     PastMotion<Pack> past_[mask + 1];
+    PastMotion<Pack> old_;
     int now_ = 0;
 };
 
@@ -156,7 +186,7 @@ template <class Law>
 class NominalWorld {
  public:
     NominalWorld(const FlightKernelModel& model, const LaneGroup& group, const VehicleState<Pack>& state)
-        : model_(model), late_(lateness(Pack(model.delay_ticks))), motion_(&motions_[0]) {
+        : model_(model), past_(model, group), late_(lateness(Pack(model.delay_ticks))), motion_(&motions_[0]) {
         WorldMemory<Pack> memory;
         group.load(group.lanes.world_memory, memory);
         past_.read(memory);
@@ -220,7 +250,7 @@ template <class Law, bool may_have_wash>
 class OtherWorlds {
  public:
     OtherWorlds(const FlightKernelModel& model, const LaneGroup& group, const VehicleState<Pack>& state)
-        : model_(model), group_(group), first_tick_(group.load(group.lanes.first_tick)) {
+        : model_(model), group_(group), past_(model, group), first_tick_(group.load(group.lanes.first_tick)) {
         group.load(group.lanes.world, world_);
         plant_ = plant_in(model.tick, world_);
         late_ = lateness(world_.delay_ticks);

@@ -32,11 +32,18 @@ struct FlightSetting {
     const Goal* goal;
 };
 
+/// Where the vehicle of a lane was at the last ticks, in the rows of all lanes: see FlightLanes::track.
+struct LaneTrack {
+    TrackRow* rows = nullptr;
+    int ticks = 0;  ///< see FlightKernelModel
+};
+
 /// The flight of one job in one lane.
 class FlightLane {
  public:
-    FlightLane(const FlightSetting& setting, FlightLanes& lanes, int number)
-        : setting_(&setting), lanes_(&lanes), number_(number) {}
+    /// @param track nothing where no delay is longer than recent_ticks
+    FlightLane(const FlightSetting& setting, FlightLanes& lanes, int number, LaneTrack track = {})
+        : setting_(&setting), lanes_(&lanes), track_(track), number_(number) {}
 
     [[nodiscard]] bool is_free() const noexcept { return job_ == nullptr; }
 
@@ -52,8 +59,11 @@ class FlightLane {
         first_tick_ = job.first_tick;
         min_clearance_m_ = HUGE_VAL;
         write<VehicleState<double>>(job.start, lanes_->state);
-        write(job.start.world, lanes_->world_memory);
-        write((world_ != nullptr ? *world_ : setting_->model.nominal_world()).numbers, lanes_->world);
+        write<WorldMemory<double>>(job.start.world, lanes_->world_memory);
+        for (int age = 1; age <= track_.ticks; ++age) {
+            write(past_at(job.start.world, age), track_row(age));
+        }
+        write(numbers(), lanes_->world);
         lanes_->tape[number_] = world_ != nullptr ? world_->world.tape : 0;
         lanes_->is_active[number_] = 1;
         for (MapPatches<lane_count>& patches : lanes_->patches) {
@@ -127,6 +137,21 @@ class FlightLane {
         for (Row& row : std::span(reinterpret_cast<Row*>(lanes_), sizeof(FlightLanes) / sizeof(Row))) {
             row[number_] = row[other.number_];
         }
+        for (TrackRow& past : std::span(track_.rows, static_cast<std::size_t>(track_.ticks))) {
+            for (Row& row : past.motion) {
+                row[number_] = row[other.number_];
+            }
+        }
+    }
+
+    /// The numbers of the world of the flight.
+    [[nodiscard]] const WorldNumbers<double>& numbers() const noexcept {
+        return (world_ != nullptr ? *world_ : setting_->model.nominal_world()).numbers;
+    }
+
+    /// The row of all lanes so many ticks ago, from 1 to the ticks of the track.
+    [[nodiscard]] LaneRows<PastMotion<double>>& track_row(int age) const noexcept {
+        return track_.rows[track_.ticks - age].motion;
     }
 
     /// This lane's part of a struct.
@@ -144,8 +169,14 @@ class FlightLane {
             rows[i][number_] = number_at<double>(from, i);
         }
     }
-    [[nodiscard]] FlightState state() const noexcept {
-        return {read<VehicleState<double>>(lanes_->state), read<WorldMemory<double>>(lanes_->world_memory)};
+    [[nodiscard]] FlightState state() const {
+        FlightState state{read<VehicleState<double>>(lanes_->state),
+                          {read<WorldMemory<double>>(lanes_->world_memory), {}}};
+        const std::size_t older = older_ticks(numbers().delay_ticks);
+        for (std::size_t i = 0; i < older; ++i) {
+            state.world.older.push_back(read<PastMotion<double>>(track_row(recent_ticks + 1 + static_cast<int>(i))));
+        }
+        return state;
     }
 
     /// That of state(), of which it is the first four numbers.
@@ -287,6 +318,7 @@ class FlightLane {
 
     const FlightSetting* setting_;
     FlightLanes* lanes_;
+    LaneTrack track_;
     int number_;
     FlightJob* job_ = nullptr;
     FlightChain* chain_ = nullptr;

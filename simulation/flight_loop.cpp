@@ -1,5 +1,7 @@
 #include "downwash/simulation/flight_loop.hpp"
 
+#include <utility>
+
 #include "downwash/dynamics/contact_step.hpp"
 #include "downwash/simulation/closed_loop.hpp"
 #include "downwash/simulation/noise.hpp"
@@ -34,49 +36,69 @@ plain_tick(const TickModel& model, const Law& law, const VehicleState<double>& s
 
 }  // namespace
 
-FlightState FlightLoop::tick_with(const double* noise, const FlightState& state, const ReferencePoint& reference,
-                                  controllers::Actuation<double>& given, const Integration& integration) const {
+void FlightLoop::tick_with(const double* noise, const FlightState& state, const ReferencePoint& reference,
+                           controllers::Actuation<double>& given, const Integration& integration,
+                           FlightState& next) const {
     const ChosenStep step{integration};
-    return controllers::visit_flown(model_.law, [&](const auto& law) {
+    controllers::visit_flown(model_.law, [&](const auto& law) {
         if (world_ != nullptr) {
-            return tick_in_world(model_, law, world_->numbers, noise, state, reference, effect_, given, step);
+            tick_in_world(model_, law, world_->numbers, noise, state, reference, effect_, given, next, step);
+            return;
         }
         const VehicleState<double>& vehicle = state;
+        VehicleState<double>& next_vehicle = next;
         if (std::holds_alternative<dynamics::OneStep>(integration)) {
-            return FlightState{plain_tick(model_, law, vehicle, reference, effect_, given), state.world};
+            next_vehicle = plain_tick(model_, law, vehicle, reference, effect_, given);
+        } else {
+            const auto motion = dynamics::motion_at(model_.plant, state.plant.q, state.plant.u);
+            next_vehicle = simulation::tick(model_, law, vehicle, motion, reference, effect_, given, step);
         }
-        const auto motion = dynamics::motion_at(model_.plant, state.plant.q, state.plant.u);
-        return FlightState{simulation::tick(model_, law, vehicle, motion, reference, effect_, given, step),
-                           state.world};
+        next.world = state.world;
     });
 }
 
-FlightState FlightLoop::tick(std::int64_t number, const FlightState& state, const ReferencePoint& reference,
-                             controllers::Actuation<double>& given, const Integration& integration) const {
+void FlightLoop::noisy_tick(std::int64_t number, const FlightState& state, const ReferencePoint& reference,
+                            controllers::Actuation<double>& given, const Integration& integration,
+                            FlightState& next) const {
     double noise[noise_count] = {};
     if (world_ != nullptr && world_->has_noise) {
         draw_noise(normal_levels(), world_->world.tape, number, noise, 1);
     }
-    return tick_with(noise, state, reference, given, integration);
+    tick_with(noise, state, reference, given, integration, next);
+}
+
+FlightState FlightLoop::tick(std::int64_t number, const FlightState& state, const ReferencePoint& reference,
+                             controllers::Actuation<double>& given, const Integration& integration) const {
+    FlightState next;
+    noisy_tick(number, state, reference, given, integration, next);
+    return next;
 }
 
 FlightState FlightLoop::quiet_tick(const FlightState& state, const ReferencePoint& reference,
                                    controllers::Actuation<double>& given, const Integration& integration) const {
     const double noise[noise_count] = {};
-    return tick_with(noise, state, reference, given, integration);
+    FlightState next;
+    tick_with(noise, state, reference, given, integration, next);
+    return next;
 }
 
 Rejection FlightLoop::fly(std::int64_t first_tick, const ReferenceSegment& segment, FlightState& state,
                           const AfterTick& after, const Integration& integration) const {
     ReferencePoint reference = segment.from();
     Rejection rejection = Rejection::none;
+    FlightState other{};
+    FlightState* now = &state;
+    FlightState* next = &other;
     for (std::int64_t t = 0; t < segment.ticks() && rejection == Rejection::none; ++t) {
         controllers::Actuation<double> given{};
-        const FlightState next = tick(first_tick + t, state, reference, given, integration);
+        noisy_tick(first_tick + t, *now, reference, given, integration, *next);
         const ReferencePoint next_reference = segment.at_tick(t + 1);
-        rejection = after(state, reference, given, next, next_reference);
-        state = next;
+        rejection = after(*now, reference, given, *next, next_reference);
+        std::swap(now, next);
         reference = next_reference;
+    }
+    if (now != &state) {
+        state = std::move(other);
     }
     return rejection;
 }

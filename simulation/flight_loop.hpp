@@ -54,8 +54,11 @@ class DOWNWASH_EXPORT FlightLoop {
                   const Integration& integration = {}) const;
 
  private:
-    FlightState tick_with(const double* noise, const FlightState& state, const ReferencePoint& reference,
-                          controllers::Actuation<double>& given, const Integration& integration) const;
+    /// @param[out] next not the state itself; a state of the same flight is replaced without an allocation
+    void tick_with(const double* noise, const FlightState& state, const ReferencePoint& reference,
+                   controllers::Actuation<double>& given, const Integration& integration, FlightState& next) const;
+    void noisy_tick(std::int64_t number, const FlightState& state, const ReferencePoint& reference,
+                    controllers::Actuation<double>& given, const Integration& integration, FlightState& next) const;
 
     const TickModel& model_;
     const FlownWorld* world_;

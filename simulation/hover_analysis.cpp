@@ -29,38 +29,44 @@ constexpr std::array<std::string_view, 7> limit_names = {"none", "arm_angle", "r
 /// Nearer to 1 than this a spectral radius is not known to be below: rounding and differences.
 constexpr double radius_slack = 1e-9;
 
-constexpr int state_numbers = number_count<double, FlightState>;
+using simulation::state_numbers;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
+/// Of a state without older motions, on the stack.
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, state_numbers, state_numbers>;
 
 /// Of one tick at its fixed point, by central differences of those numbers of the state that feed back. The effect is
 /// linear already, so that the step may be small: 1e-6 leaves an error of some 1e-10.
-Jacobian jacobian(const FlightModel& model, const HoverTrim& trim, LinearEffect& effect) {
+template <class Matrix>
+Matrix jacobian(const FlightModel& model, const HoverTrim& trim, LinearEffect& effect) {
     constexpr double step = 1e-6;
     TickModel level = model.tick();
     level.tilt_loss = no_tilt_loss;  // tangents are of a level vehicle
     const simulation::FlightLoop loop(level, flown_world(model, nullptr), effect);
-    const auto feeds_back = [&](int i) { return number_at<bool>(trim.feeds_back, i); };
+    FlightState at_rest = trim.state;
+    simulation::remember_older(model.nominal_world().numbers, at_rest.world);
+    const int numbers = simulation::number_count_of(at_rest);
+    const auto feeds_back = [&](int i) { return i >= state_numbers || number_at<bool>(trim.feeds_back, i); };
     const auto after_change = [&](int i, double change) {
-        FlightState state = trim.state;
-        set_number_at(state, i, number_at<double>(state, i) + change);
+        FlightState state = at_rest;
+        simulation::set_number_of(state, i, simulation::number_of(state, i) + change);
         controllers::Actuation<double> given{};
         return loop.quiet_tick(state, trim.reference, given);
     };
-    Jacobian result(state_numbers, state_numbers);
+    Matrix result(numbers, numbers);
     int columns = 0;
-    for (int i = 0; i < state_numbers; ++i) {
+    for (int i = 0; i < numbers; ++i) {
         if (!feeds_back(i)) {
             continue;
         }
         const FlightState above = after_change(i, step);
         const FlightState below = after_change(i, -step);
         int rows = 0;
-        for (int k = 0; k < state_numbers; ++k) {
+        for (int k = 0; k < numbers; ++k) {
             if (feeds_back(k)) {
-                result(rows++, columns) = (number_at<double>(above, k) - number_at<double>(below, k)) / (2 * step);
+                result(rows++, columns) =
+                    (simulation::number_of(above, k) - simulation::number_of(below, k)) / (2 * step);
             }
         }
         ++columns;
@@ -70,14 +76,15 @@ Jacobian jacobian(const FlightModel& model, const HoverTrim& trim, LinearEffect&
 }
 
 /// Modes that cannot be found, as with gains beyond all measure, count as growing without limit.
-void find_modes(const Jacobian& jacobian, double tick_s, HoverStability& stability) {
+template <class Matrix>
+void find_modes(const Matrix& jacobian, double tick_s, HoverStability& stability) {
     stability.spectral_radius = infinity;
     stability.growth_rate_1_s = infinity;
     stability.growing_modes = static_cast<int>(jacobian.rows());
     if (!jacobian.allFinite()) {
         return;
     }
-    const Eigen::EigenSolver<Jacobian> solver(jacobian, false);
+    const Eigen::EigenSolver<Matrix> solver(jacobian, false);
     if (solver.info() != Eigen::Success || !solver.eigenvalues().allFinite()) {
         return;
     }
@@ -180,7 +187,11 @@ HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, do
         return analysis;
     }
     find_stiffness(tick, analysis.trim, effect, analysis.stability);
-    find_modes(jacobian(model, analysis.trim, effect), tick.tick_s, analysis.stability);
+    if (simulation::older_ticks(model.nominal_world().numbers.delay_ticks) == 0) {
+        find_modes(jacobian<Jacobian>(model, analysis.trim, effect), tick.tick_s, analysis.stability);
+    } else {
+        find_modes(jacobian<Eigen::MatrixXd>(model, analysis.trim, effect), tick.tick_s, analysis.stability);
+    }
     if (!(analysis.stability.spectral_radius < 1 - radius_slack)) {
         analysis.verdict = HoldVerdict::unstable;
     } else {

@@ -15,7 +15,7 @@
 namespace downwash {
 namespace {
 
-constexpr int all_numbers = number_count<double, FlightState>;
+constexpr int all_numbers = simulation::state_numbers;
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, all_numbers, all_numbers>;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, all_numbers, 1>;
@@ -23,6 +23,11 @@ using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, all_numbers, 1>;
 /// Energy only grows; nothing depends on it.
 constexpr int energy_number =
     static_cast<int>(offsetof(simulation::VehicleState<double>, plant.energy_j) / sizeof(double));
+
+/// Whether so many past motions belong to the state that its Jacobian takes longer than a hover from the start.
+bool is_too_late(const FlownWorld& world) {
+    return simulation::older_ticks(world.numbers.delay_ticks) > 0;
+}
 
 }  // namespace
 
@@ -55,6 +60,9 @@ struct HoverEquilibria::Impl {
     /// The vehicle after a hover in the nominal world, and what follows from its Jacobian there.
     void begin(const FlightState& start) {
         const FlownWorld quiet = without_noise(model.nominal_world());
+        if (is_too_late(quiet)) {
+            return;
+        }
         with_tick(quiet, [&](const auto& tick) {
             FlightState state = start;
             state.world = memory_at_start(quiet, start.plant);
@@ -185,7 +193,7 @@ HoverEquilibria::HoverEquilibria(const FlightModel& model, const AeroMap* map, c
 HoverEquilibria::~HoverEquilibria() = default;
 
 std::optional<FlightState> HoverEquilibria::in(const FlownWorld& world) const {
-    if (!impl_->is_known) {
+    if (!impl_->is_known || is_too_late(world)) {
         return std::nullopt;
     }
     std::optional<FlightState> found;

@@ -22,8 +22,8 @@ class DOWNWASH_EXPORT HoverEquilibria {
     HoverEquilibria& operator=(const HoverEquilibria&) = delete;
 
     /// The equilibrium in a world, to some micrometres, with the memory of a world without gusts and no energy spent.
-    /// Nothing where none was found, or where small disturbances of it are not known to decay: fly the hover there. May
-    /// be called from several threads.
+    /// Nothing where none was found, where small disturbances of it are not known to decay, or where the controller
+    /// sees more than simulation::recent_ticks late: fly the hover there. May be called from several threads.
     [[nodiscard]] std::optional<FlightState> in(const FlownWorld& world) const;
 
  private:

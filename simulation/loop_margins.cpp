@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstddef>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/numbers.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
@@ -58,71 +61,109 @@ struct Disturbed {
     }
 };
 
-/// The closed loop from what is added to a command to that command: x' = A x + B u, y = C x.
+/// What past motions of one age do to a tick.
+struct LatePart {
+    int age = 0;        ///< in ticks, from 1
+    Eigen::MatrixXd a;  ///< a column for each number of the motion
+    Eigen::RowVectorXd c;
+};
+
+/// The closed loop from what is added to a command to that command, x' = A x + B u, y = C x, with the parts of what the
+/// controller sees late. A motion of that age is the first numbers of x so many ticks ago, so that x has no others.
 struct LinearLoop {
     Eigen::MatrixXd a;
     Eigen::VectorXd b;
     Eigen::RowVectorXd c;
+    std::vector<LatePart> late;
 };
+
+constexpr int motion_numbers = number_count<double, simulation::PastMotion<double>>;
+static_assert(offsetof(dynamics::PlantState<double>, q) == 0);
+static_assert(offsetof(dynamics::PlantState<double>, u) == 4 * sizeof(double));
+
+/// The place of a number of a past motion among the numbers of a state.
+int number_of_past(int age, int i) {
+    constexpr int first = number_count<bool, simulation::VehicleState<bool>>;
+    return age <= simulation::recent_ticks
+               ? first + (age - 1) * motion_numbers + i
+               : simulation::state_numbers + (age - simulation::recent_ticks - 1) * motion_numbers + i;
+}
 
 LinearLoop linearised(const Disturbed& tick) {
     constexpr double step = 1e-6;
-    constexpr int all = number_count<double, FlightState>;
+    const simulation::WorldNumbers<double>& world = tick.model.nominal_world().numbers;
+    FlightState at_rest = tick.trim.state;
+    simulation::remember_older(world, at_rest.world);
+    // The numbers of the vehicle come first, its motion before all others; then those of its past.
+    constexpr int vehicle_numbers = number_count<double, simulation::VehicleState<double>>;
     std::vector<int> used;
-    for (int i = 0; i < all; ++i) {
+    for (int i = 0; i < vehicle_numbers; ++i) {
         if (number_at<bool>(tick.trim.feeds_back, i)) {
             used.push_back(i);
         }
     }
     const auto size = static_cast<Eigen::Index>(used.size());
-    LinearLoop loop{Eigen::MatrixXd(size, size), Eigen::VectorXd(size), Eigen::RowVectorXd(size)};
     const auto difference = [&](const Disturbed::Result& above, const Disturbed::Result& below, auto column) {
         for (Eigen::Index row = 0; row < size; ++row) {
             const int i = used[static_cast<std::size_t>(row)];
             column(row) = (number_at<double>(above.next, i) - number_at<double>(below.next, i)) / (2 * step);
         }
     };
-    for (Eigen::Index column = 0; column < size; ++column) {
+    // How a tick depends on a number of the state.
+    const auto column_of = [&](int i, auto&& a, double& c) {
         const auto changed = [&](double change) {
-            FlightState state = tick.trim.state;
-            const int i = used[static_cast<std::size_t>(column)];
-            set_number_at(state, i, number_at<double>(state, i) + change);
+            FlightState state = at_rest;
+            simulation::set_number_of(state, i, simulation::number_of(state, i) + change);
             return tick(state, 0);
         };
         const Disturbed::Result above = changed(step);
         const Disturbed::Result below = changed(-step);
-        difference(above, below, [&](Eigen::Index row) -> double& { return loop.a(row, column); });
-        loop.c(column) = (above.commanded - below.commanded) / (2 * step);
+        difference(above, below, [&](Eigen::Index row) -> double& { return a(row); });
+        c = (above.commanded - below.commanded) / (2 * step);
+    };
+    LinearLoop loop{Eigen::MatrixXd(size, size), Eigen::VectorXd(size), Eigen::RowVectorXd(size), {}};
+    for (Eigen::Index column = 0; column < size; ++column) {
+        column_of(used[static_cast<std::size_t>(column)], loop.a.col(column), loop.c(column));
     }
-    difference(tick(tick.trim.state, step), tick(tick.trim.state, -step),
-               [&](Eigen::Index row) -> double& { return loop.b(row); });
+    difference(tick(at_rest, step), tick(at_rest, -step), [&](Eigen::Index row) -> double& { return loop.b(row); });
+    if (world.delay_ticks > 0) {
+        const int ages = simulation::recent_ticks + static_cast<int>(at_rest.world.older.size());
+        for (int age = 1; age <= ages; ++age) {
+            LatePart part{age, Eigen::MatrixXd(size, motion_numbers), Eigen::RowVectorXd(motion_numbers)};
+            for (int i = 0; i < motion_numbers; ++i) {
+                column_of(number_of_past(age, i), part.a.col(i), part.c(i));
+            }
+            if (!part.a.isZero(0) || !part.c.isZero(0)) {
+                loop.late.push_back(std::move(part));
+            }
+        }
+    }
     return loop;
 }
 
-/// A loop's answer at many frequencies: with A = U T U* (Schur), each takes the solution of a triangular system only.
+/// A loop's answer at a frequency, exactly: a past motion is the motion times z^-age.
 class FrequencyResponse {
  public:
-    explicit FrequencyResponse(const LinearLoop& loop) {
-        const Eigen::ComplexSchur<Eigen::MatrixXd> schur(loop.a);
-        triangle_ = schur.matrixT();
-        in_ = schur.matrixU().adjoint() * loop.b;
-        out_ = loop.c * schur.matrixU();
-    }
+    explicit FrequencyResponse(const LinearLoop& loop) : loop_(loop) {}
 
     /// The loop's gain L: the command that comes back, reversed, for one that goes in. With T from what is added to the
     /// command, u = y + d and y = T d, so that L = -T / (1 + T).
     [[nodiscard]] Complex gain_at(double angle_rad) const {
-        const Eigen::Index size = triangle_.rows();
-        const Eigen::MatrixXcd resolvent =
-            std::polar(1.0, angle_rad) * Eigen::MatrixXcd::Identity(size, size) - triangle_;
-        const Complex t = out_ * resolvent.triangularView<Eigen::Upper>().solve(in_);
+        const Eigen::Index size = loop_.a.rows();
+        Eigen::MatrixXcd a = loop_.a;
+        Eigen::RowVectorXcd c = loop_.c;
+        for (const LatePart& part : loop_.late) {
+            const Complex ago = std::polar(1.0, -angle_rad * part.age);
+            a.leftCols(motion_numbers) += ago * part.a;
+            c.head(motion_numbers) += ago * part.c;
+        }
+        const Eigen::MatrixXcd resolvent = std::polar(1.0, angle_rad) * Eigen::MatrixXcd::Identity(size, size) - a;
+        const Complex t = c * resolvent.partialPivLu().solve(loop_.b.cast<Complex>());
         return -t / (1.0 + t);
     }
 
  private:
-    Eigen::MatrixXcd triangle_;
-    Eigen::VectorXcd in_;
-    Eigen::RowVectorXcd out_;
+    const LinearLoop& loop_;
 };
 
 /// Margins from samples of L over rising frequencies, between which its logarithm is taken as linear.

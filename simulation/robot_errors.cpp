@@ -152,9 +152,11 @@ std::vector<KeyError> too_long_delay(const Robot& robot) {
     if (robot.controller.delay_s * robot.controller.rate_hz <= simulation::max_delay_ticks) {
         return {};
     }
-    return {{"controller.delay_s", "is " + to_text(robot.controller.delay_s) + ": expected at most " +
-                                       std::to_string(simulation::max_delay_ticks) + " control ticks, " +
-                                       rounded(simulation::max_delay_ticks / robot.controller.rate_hz) + " s"}};
+    return {{"controller.delay_s",
+             "is " + to_text(robot.controller.delay_s) + ": expected at most " +
+                 std::to_string(simulation::max_delay_ticks) + " control ticks, " +
+                 rounded(simulation::max_delay_ticks / robot.controller.rate_hz) + " s; a controller.rate_hz of " +
+                 rounded(std::floor(simulation::max_delay_ticks / robot.controller.delay_s)) + " or less would do"}};
 }
 
 std::vector<KeyError> wash_without_drag(const Robot& robot) {

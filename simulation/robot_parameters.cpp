@@ -343,7 +343,7 @@ void add_controller(Rows& rows) {
     rows.push_back(group("controller", "the controllers of multirotor and arm"));
     append(rows, {number("controller.rate_hz", "control ticks per second", in(&Robot::controller, &Controller::rate_hz))
                       .between(10, 1000),
-                  number("controller.delay_s", "age of the state that the controller sees, at most three control ticks",
+                  number("controller.delay_s", "age of the state that the controller sees, at most 64 control ticks",
                          in(&Robot::controller, &Controller::delay_s))
                       .between(0, 0.3)});
     add_laws(rows, static_cast<const ControlLaw*>(nullptr));

@@ -84,6 +84,14 @@ void set_gusts(const World& world, double tick_s, simulation::WorldNumbers<doubl
     numbers.gust_z_noise[2] = std::sqrt(std::max(0.0, q22 - numbers.gust_z_noise[1] * numbers.gust_z_noise[1]));
 }
 
+/// A delay in ticks. A long one that is a whole number of ticks but for rounding is just that: no state is remembered
+/// for a share of nothing.
+double delay_ticks(double delay_s, double rate_hz) {
+    const double ticks = delay_s * rate_hz;
+    const double whole = std::round(ticks);
+    return ticks > simulation::recent_ticks && std::abs(ticks - whole) <= 1e-9 * whole ? whole : ticks;
+}
+
 }  // namespace
 
 FlownWorld make_world(const Robot& robot, const World& world) {
@@ -102,7 +110,7 @@ FlownWorld make_world(const Robot& robot, const World& world) {
     numbers.ceiling_scale = world.ceiling_scale;
     numbers.scene_x_m = world.scene_x_m;
     numbers.scene_z_m = world.scene_z_m;
-    numbers.delay_ticks = (robot.controller.delay_s + world.delay_s) * robot.controller.rate_hz;
+    numbers.delay_ticks = delay_ticks(robot.controller.delay_s + world.delay_s, robot.controller.rate_hz);
     numbers.position_bias_m[0] = world.position_bias_x_m;
     numbers.position_bias_m[1] = world.position_bias_z_m;
     numbers.pitch_bias_rad = world.pitch_bias_rad;
@@ -128,9 +136,8 @@ FlownWorld without_noise(const FlownWorld& world) noexcept {
     return quiet;
 }
 
-simulation::WorldMemory<double> memory_at_start(const FlownWorld& world,
-                                                const dynamics::PlantState<double>& state) noexcept {
-    simulation::WorldMemory<double> memory{};
+simulation::FlightMemory memory_at_start(const FlownWorld& world, const dynamics::PlantState<double>& state) noexcept {
+    simulation::FlightMemory memory{};
     for (simulation::PastMotion<double>& past : memory.past) {
         std::copy(state.q, state.q + 4, past.q);
         std::copy(state.u, state.u + 4, past.u);

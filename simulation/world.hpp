@@ -4,6 +4,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/dynamics/plant_state.hpp"
+#include "downwash/simulation/flight_memory.hpp"
 #include "downwash/simulation/robot.hpp"
 #include "downwash/simulation/world_numbers.hpp"
 
@@ -58,14 +59,14 @@ struct FlownWorld {
 
 /// Prepares a world for the tick.
 /// @pre robot_errors(robot) is empty; scales are above -1, the rotors' time constant stays at least half a tick where
-/// the robot has a lag, and the delay stays within 0 and simulation::max_delay_ticks
+/// the robot has a lag, and the delay stays within 0 and simulation::max_delay_ticks, but for rounding
 [[nodiscard]] DOWNWASH_EXPORT FlownWorld make_world(const Robot& robot, const World& world);
 
 /// A world without its noise and gusts.
 [[nodiscard]] DOWNWASH_EXPORT FlownWorld without_noise(const FlownWorld& world) noexcept;
 
 /// What a world remembers as a flight begins: the vehicle was always in this state, and gusts blow already.
-[[nodiscard]] DOWNWASH_EXPORT simulation::WorldMemory<double> memory_at_start(
+[[nodiscard]] DOWNWASH_EXPORT simulation::FlightMemory memory_at_start(
     const FlownWorld& world, const dynamics::PlantState<double>& state) noexcept;
 
 }  // namespace downwash

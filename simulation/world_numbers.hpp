@@ -8,7 +8,10 @@
 namespace downwash::simulation {
 
 /// Greatest delay of the state that the controller sees, in ticks.
-inline constexpr int max_delay_ticks = 3;
+inline constexpr int max_delay_ticks = 64;
+
+/// So many ticks every state remembers. Only flights whose controllers see later remember more: see FlightMemory.
+inline constexpr int recent_ticks = 3;
 
 /// Standard normal numbers that a world draws for every tick.
 inline constexpr int noise_count = 8;
@@ -22,7 +25,7 @@ struct PastMotion {
 /// What a world remembers of a flight besides the vehicle; all members are T.
 template <class T>
 struct WorldMemory {
-    PastMotion<T> past[max_delay_ticks];  ///< one tick ago, two ticks ago, ...
+    PastMotion<T> past[recent_ticks];  ///< one tick ago, two ticks ago, ...
     T gust[3];  ///< filter states of the Dryden model, unit variance: x; z, first and second order
 };
 

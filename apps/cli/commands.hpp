@@ -8,6 +8,7 @@ namespace downwash::cli {
 void add_check(Command program, Action& action);
 void add_solve(Command program, Action& action);
 void add_execute(Command program, Action& action);
+void add_replan(Command program, Action& action);
 void add_init(Command program, Action& action);
 void add_explain(Command program, Action& action);
 void add_manual(Command program, Action& action);

@@ -25,8 +25,6 @@
 namespace downwash::cli {
 namespace {
 
-namespace fs = std::filesystem;
-
 struct ExecuteArguments {
     std::string problem;
     std::string plan;
@@ -45,26 +43,6 @@ Problem as_planned(Problem problem, const Solution& solution) {
     problem.planner.objective = solution.objective;
     problem.planner.seed = solution.seed;
     return problem;
-}
-
-/// Whether results in a folder would replace the plan's own file.
-bool holds_plan(const fs::path& folder, const std::string& plan) {
-    std::error_code error;
-    return fs::equivalent(folder / "solution.json", plan, error);
-}
-
-fs::path folder_for(const ExecuteArguments& given, const Problem& problem) {
-    if (!given.out) {
-        fs::path folder = default_folder(problem);
-        do {
-            folder += "-executed";
-        } while (holds_plan(folder, plan_file(given.plan)));
-        return folder;
-    }
-    if (holds_plan(*given.out, plan_file(given.plan))) {
-        throw UsageError("--out " + *given.out + " holds the plan itself, which would be replaced; choose another");
-    }
-    return *given.out;
 }
 
 std::uint64_t seed_of(const ExecuteArguments& given, const Problem& problem) {
@@ -115,7 +93,8 @@ ExitCode run(const ExecuteArguments& given) {
     require_whole_plan(given.plan);
     read = as_planned(std::move(read), solution);
     const std::optional<FlownWorld> world = world_of(given, read);
-    RunFolder folder = claimed_folder(folder_for(given, read), read, given.problem, given.force);
+    RunFolder folder = claimed_folder(folder_beside_plan(given.out, read, "-executed", plan_file(given.plan)), read,
+                                      given.problem, given.force);
     const bool is_other = is_of_another_problem(plan_file(given.plan), solution.certificate.has_value(), read);
     if (is_other) {
         solution.certificate.reset();

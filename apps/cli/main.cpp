@@ -28,6 +28,7 @@ void add_all(Command program, Action& action) {
     add_check(program, action);
     add_explain(program, action);
     add_solve(program, action);
+    add_replan(program, action);
     add_execute(program, action);
     add_validate(program, action, nullptr);
     add_aeromap(program, action);

@@ -97,6 +97,23 @@ std::string order_rows(const VisitOrder& order, bool has_plan, const std::option
     return text;
 }
 
+/// Where a plan takes over from another one, and how the two join.
+std::string takeover_rows(const Start& start, const Replanned& from, std::string_view unit) {
+    const double speed_m_s = std::hypot(start.velocity[plane::x], start.velocity[plane::z]);
+    std::string text =
+        table_row("starts", fmt::format("at {:.2f} s of {}: x {:.3f} m, z {:.3f} m, arm {:.1f} deg, {:.2f} m/s",
+                                        from.t_s, from.plan, start.at[plane::x], start.at[plane::z],
+                                        start.at[plane::arm] * degrees_per_radian, speed_m_s));
+    text += table_row("", from.same_reference_s
+                              ? fmt::format("with its reference, speed and acceleration; both plans are the same for "
+                                            "{:.2f} s more",
+                                            *from.same_reference_s)
+                              : "no plan takes over");
+    text += table_row("earlier plan", fmt::format("its rest ends {} here, cost {:.6g}{}{}", name_of(from.rest_outcome),
+                                                  from.rest_cost, unit.empty() ? "" : " ", unit));
+    return text;
+}
+
 std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution, const Execution& flight) {
     std::string text;
     const std::string_view symbol = unit_of(solution.objective);
@@ -288,6 +305,9 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     if (solution.execution_world) {
         text += table_row("world", fmt::format("{} of seed {}; the certificate and the search are those of the plan",
                                                solution.execution_world->index, solution.execution_world->seed));
+    }
+    if (solution.replanned) {
+        text += takeover_rows(problem.start, *solution.replanned, unit_of(solution.objective));
     }
     if (solution.order) {
         text += order_rows(*solution.order, solution.plan.has_value(), problem.energy_budget_j);

@@ -100,7 +100,12 @@ std::vector<ObstacleOutline> thinned_outlines(std::vector<ObstacleOutline> outli
 
 std::vector<VisibleOutline> visible_outlines(std::vector<ObstacleOutline> outlines, const Bounds& extent) {
     std::vector<VisibleOutline> all;
-    for (ObstacleOutline& outline : outlines) {
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        if (!outlines[i].beside.empty()) {
+            ObstacleOutline beside{"", false, std::exchange(outlines[i].beside, {}), {}};
+            outlines.push_back(std::move(beside));  // its name is that of the part that is cut
+        }
+        ObstacleOutline& outline = outlines[i];
         VisibleOutline visible;
         const auto add_edges = [&](const Ring& line, bool is_closed) {
             const std::vector<Ring> pieces = clipped_line(line, is_closed, extent);
@@ -207,7 +212,8 @@ std::vector<PlacedLabel> placed_names(const FieldFigure& figure, const std::vect
     const std::vector<bool> named = are_named(outlines);
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         const double name_width_px = text_width_px(shown_name(outlines[i].outline.name), font_px) + 6;
-        shapes.push_back({named[i] ? name_width_px / px_per_m : 0, outlines[i].fill, outlines[i].edges});
+        const bool is_named = named[i] && !outlines[i].outline.name.empty();
+        shapes.push_back({is_named ? name_width_px / px_per_m : 0, outlines[i].fill, outlines[i].edges});
     }
     for (const FigurePoints& points : figure.points) {
         for (std::size_t i = 0; i < points.labels.size(); ++i) {

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
+#include <map>
+#include <numeric>
+#include <set>
 #include <utility>
 #include <variant>
 
@@ -106,6 +110,81 @@ Ring circle(const PlanePoint& center, double radius_m) {
     return points;
 }
 
+/// The parts of a surface, as lists of triangles: those that share an edge with one other triangle belong together.
+/// Where four meet at an edge, two bodies touch. Corners at the same place are one.
+std::vector<std::vector<std::size_t>> parts_of(const std::vector<Vector3>& vertices_m,
+                                               const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    std::map<Vector3, std::size_t> corners;
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> at_edge;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        std::array<std::size_t, 3> own{};
+        std::ranges::transform(triangles[i], own.begin(), [&](std::uint32_t vertex) {
+            return corners.emplace(vertices_m[vertex], corners.size()).first->second;
+        });
+        for (std::size_t side = 0; side < 3; ++side) {
+            at_edge[std::minmax(own[side], own[(side + 1) % 3])].push_back(i);
+        }
+    }
+    std::vector<std::size_t> part(triangles.size());
+    std::iota(part.begin(), part.end(), std::size_t{0});
+    const auto root = [&part](std::size_t i) {
+        while (part[i] != i) {
+            i = part[i] = part[part[i]];
+        }
+        return i;
+    };
+    for (const auto& [edge, around] : at_edge) {
+        if (around.size() == 2) {
+            part[root(around[0])] = root(around[1]);
+        }
+    }
+    std::map<std::size_t, std::vector<std::size_t>> by_root;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        by_root[root(i)].push_back(i);
+    }
+    std::vector<std::vector<std::size_t>> parts;
+    for (auto& [number, members] : by_root) {
+        parts.push_back(std::move(members));
+    }
+    return parts;
+}
+
+/// The projections of the parts of a mesh that are on one side of the plane.
+std::vector<Ring> parts_beside(const std::vector<Vector3>& vertices_m,
+                               const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+    constexpr std::size_t max_parts = 300, max_triangles = 50'000;
+    if (triangles.size() > max_triangles) {
+        return {};
+    }
+    std::vector<Ring> rings;
+    std::set<std::vector<long>> seen;  // girders left and right of the plane look the same
+    for (const std::vector<std::size_t>& part : parts_of(vertices_m, triangles)) {
+        std::vector<Vector3> corners_m;
+        bool is_left = false, is_right = false;
+        for (const std::size_t triangle : part) {
+            for (const std::uint32_t vertex : triangles[triangle]) {
+                corners_m.push_back(vertices_m[vertex]);
+                is_left = is_left || corners_m.back()[1] >= 0;
+                is_right = is_right || corners_m.back()[1] < 0;
+            }
+        }
+        if (is_left != is_right) {
+            Ring ring = projection(corners_m);
+            std::vector<long> rounded;
+            for (const PlanePoint& p : ring) {
+                rounded.insert(rounded.end(), {std::lround(p.x_m * 1e4), std::lround(p.z_m * 1e4)});
+            }
+            if (seen.insert(std::move(rounded)).second) {
+                rings.push_back(std::move(ring));
+            }
+        }
+        if (rings.size() > max_parts) {
+            return {};
+        }
+    }
+    return rings;
+}
+
 /// Sets the parts of an outline that depend on the kind of shape.
 class OutlineOf {
  public:
@@ -133,6 +212,8 @@ class OutlineOf {
         outline_.lines = std::move(cut.lines);
         if (!outline_.is_cut) {
             outline_.rings = {projection(vertices_m)};
+        } else {
+            outline_.beside = parts_beside(vertices_m, mesh.surface->triangles);
         }
     }
 

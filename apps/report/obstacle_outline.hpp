@@ -19,6 +19,9 @@ struct ObstacleOutline {
     std::vector<Ring> rings;
     /// Open lines, where the plane cuts a surface that is not closed.
     std::vector<Ring> lines;
+    /// Convex hulls of the projected parts of a mesh that the plane does not cut, where it cuts others. Empty for a
+    /// mesh with more parts or triangles than can be told apart in a picture.
+    std::vector<Ring> beside = {};
 };
 
 /// Every obstacle of the scene in the plane parallel to the plane of motion, `lateral_m` to the left of it: the cross

@@ -34,7 +34,7 @@ constexpr int counted_ticks = 1000;
 template <template <class> class Struct>
 Struct<Counted> counted(const Struct<double>& from) {
     Struct<Counted> to;
-    for (int i = 0; i < number_count<double, Struct<double>>; ++i) {
+    for (int i = 0; i < number_count<Counted, Struct<Counted>>; ++i) {
         set_number_at(to, i, Counted(number_at<double>(from, i)));
     }
     return to;
@@ -159,7 +159,7 @@ void count(const Problem& problem, const FlightModel& model, const AeroMap& map,
         lane::operations = before;  // the kernel has it from the tick before
         move_in_world<may_have_wash>(tick, law, world, plant, seen, wind_in(world, state.world), state, attitude,
                                      reference, field, given, next);
-        next.world = later(world, state.plant, state.world, noise);
+        pass_tick(world, state.plant, state.world, noise, next.world);
         return attitude;
     };
     const auto kind = [&]<bool may_have_wash>(std::bool_constant<may_have_wash> wash) {

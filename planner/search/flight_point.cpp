@@ -1,8 +1,6 @@
 #include "downwash/search/flight_point.hpp"
 
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
 
 namespace downwash::planning {
 
@@ -23,11 +21,8 @@ FlightPoint resting_at(const FlightModel& model, const Configuration& c) {
 }
 
 bool is_same_moment(const FlightPoint& a, const FlightPoint& b) {
-    static_assert(std::is_trivially_copyable_v<FlightState> && sizeof(FlightState) % sizeof(double) == 0);
-    const auto is_same = [](const FlightState& one, const FlightState& other) {
-        return std::memcmp(&one, &other, sizeof(FlightState)) == 0;
-    };
-    return is_same(a.vehicle, b.vehicle) && std::ranges::equal(a.others, b.others, is_same) &&
+    const auto are_same = [](const FlightState& one, const FlightState& other) { return is_same(one, other); };
+    return is_same(a.vehicle, b.vehicle) && std::ranges::equal(a.others, b.others, are_same) &&
            a.reference == b.reference;
 }
 

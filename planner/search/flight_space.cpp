@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/base/numbers.hpp"
 #include "downwash/search/ompl_space.hpp"
 
 namespace downwash::planning {
@@ -126,24 +127,39 @@ class FlightSpace : public ob::StateSpace {
     ob::State* allocState() const override { return new Moment; }
     void freeState(ob::State* state) const override { delete static_cast<Moment*>(state); }
     unsigned int getSerializationLength() const override {
-        return static_cast<unsigned int>(sizeof(PlainMoment) + other_worlds() * sizeof(FlightState));
+        std::size_t numbers = number_count_in(task_.model.nominal_world());
+        for (std::size_t i = 0; i < other_worlds(); ++i) {
+            numbers += number_count_in(task_.worlds->worlds[i]);
+        }
+        return static_cast<unsigned int>(sizeof(PlainMoment) + numbers * sizeof(double));
     }
     void serialize(void* bytes, const ob::State* state) const override {
         const FlightPoint& point = point_of(state);
-        const PlainMoment plain{point.vehicle, point.reference, point.rest, point.cost, point.ticks, point.is_valid};
-        Fleet others = point.others;
-        others.resize(other_worlds(), point.vehicle);
-        std::memcpy(bytes, &plain, sizeof plain);
-        std::memcpy(static_cast<char*>(bytes) + sizeof plain, others.data(), others.size() * sizeof(FlightState));
+        const PlainMoment plain{point.reference, point.rest, point.cost, point.ticks, point.is_valid};
+        auto* to = static_cast<char*>(bytes);
+        std::memcpy(to, &plain, sizeof plain);
+        to = write_vehicle(point.vehicle, task_.model.nominal_world(), to + sizeof plain);
+        for (std::size_t i = 0; i < other_worlds(); ++i) {
+            to = write_vehicle(i < point.others.size() ? point.others[i] : point.vehicle, task_.worlds->worlds[i], to);
+        }
     }
     void deserialize(ob::State* state, const void* bytes) const override {
-        static_assert(std::is_trivially_copyable_v<PlainMoment> && std::is_trivially_copyable_v<FlightState>);
+        static_assert(std::is_trivially_copyable_v<PlainMoment>);
         PlainMoment plain;
-        Fleet others(other_worlds());
-        std::memcpy(&plain, bytes, sizeof plain);
-        std::memcpy(others.data(), static_cast<const char*>(bytes) + sizeof plain, others.size() * sizeof(FlightState));
-        point_of(state) = {plain.vehicle, std::move(others), plain.reference, plain.rest,
-                           plain.cost,    plain.ticks,       plain.is_valid};
+        const auto* from = static_cast<const char*>(bytes);
+        std::memcpy(&plain, from, sizeof plain);
+        from += sizeof plain;
+        FlightPoint& point = point_of(state);
+        from = read_vehicle(from, task_.model.nominal_world(), point.vehicle);
+        point.others.resize(other_worlds());
+        for (std::size_t i = 0; i < other_worlds(); ++i) {
+            from = read_vehicle(from, task_.worlds->worlds[i], point.others[i]);
+        }
+        point.reference = plain.reference;
+        point.rest = plain.rest;
+        point.cost = plain.cost;
+        point.ticks = plain.ticks;
+        point.is_valid = plain.is_valid;
     }
     void printState(const ob::State* state, std::ostream& out) const override {
         const Configuration at = configuration_of(point_of(state).vehicle.plant.q);
@@ -157,15 +173,41 @@ class FlightSpace : public ob::StateSpace {
     void registerProjections() override { registerDefaultProjection(std::make_shared<PlaceOfRest>(this, space())); }
 
  private:
-    /// A moment but for the vehicle in other worlds.
+    /// A moment but for the vehicle.
     struct PlainMoment {
-        FlightState vehicle;
         ReferencePoint reference;
         Configuration rest;
         double cost;
         std::int64_t ticks;
         bool is_valid;
     };
+
+    /// How many numbers the state of a vehicle has in a world.
+    [[nodiscard]] static std::size_t number_count_in(const FlownWorld& world) {
+        return simulation::state_numbers + simulation::older_ticks(world.numbers.delay_ticks) *
+                                               number_count<double, simulation::PastMotion<double>>;
+    }
+    /// @return the end of what was written
+    static char* write_vehicle(const FlightState& vehicle, const FlownWorld& world, char* to) {
+        FlightState whole = vehicle;
+        simulation::remember_older(world.numbers, whole.world);
+        for (std::size_t i = 0; i < number_count_in(world); ++i, to += sizeof(double)) {
+            const double number = simulation::number_of(whole, static_cast<int>(i));
+            std::memcpy(to, &number, sizeof number);
+        }
+        return to;
+    }
+    /// @return the end of what was read
+    static const char* read_vehicle(const char* from, const FlownWorld& world, FlightState& vehicle) {
+        vehicle.world.older.resize(simulation::older_ticks(world.numbers.delay_ticks));
+        for (std::size_t i = 0; i < number_count_in(world); ++i, from += sizeof(double)) {
+            double number = 0;
+            std::memcpy(&number, from, sizeof number);
+            simulation::set_number_of(vehicle, static_cast<int>(i), number);
+        }
+        return from;
+    }
+
     [[nodiscard]] const SearchSpace& space() const noexcept { return task_.space; }
     [[nodiscard]] std::size_t other_worlds() const noexcept {
         return task_.worlds != nullptr ? task_.worlds->worlds.size() : 0;

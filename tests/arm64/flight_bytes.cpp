@@ -69,12 +69,12 @@ int main() {
         for (int i = 0; i < flights; ++i) {
             const auto& job = jobs[static_cast<std::size_t>(i)];
             Digest digest;
-            digest.add(&job.legs[0].end, sizeof(FlightState));
+            digest.add(&job.legs[0].end, simulation::state_numbers * sizeof(double));
             print("together", i, job.rejection(), job.legs[0].flight.ticks, digest);
             FlightState state = before[static_cast<std::size_t>(i)].start;
             const SegmentFlight alone = fly(model, map.get(), rules, job.legs[0].segment, state);
             Digest again;
-            again.add(&state, sizeof(FlightState));
+            again.add(&state, simulation::state_numbers * sizeof(double));
             print("alone", i, alone.rejection, alone.ticks, again);
         }
 

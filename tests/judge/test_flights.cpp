@@ -177,6 +177,33 @@ TEST_CASE("It is in worlds as well, with lag, delay, drag, noise and gusts") {
     }
 }
 
+TEST_CASE("It is where the controller sees many ticks late") {
+    Problem problem = shipped("bridge_inspection");
+    const Plan plan = plan_of(problem, 100);
+    make_real(problem.robot);
+    problem.robot.controller.delay_s = 0.036;
+    problem.robot.uncertainty.reset();
+    problem.uncertainty.emplace();
+    const judge::PlanJudge judge(problem);
+    const auto nominal = executed(problem, plan, true, std::nullopt);
+    compare(judge.fly(plan, {true, std::nullopt}), *nominal);
+    problem.robot.controller.delay_s = 0.03;
+    CHECK(nominal->energy_j != executed(problem, plan, true, std::nullopt)->energy_j);  // or the rest is not seen
+    problem.robot.controller.delay_s = 0.036;
+    for (std::uint64_t index = 1; index < 4; ++index) {
+        CAPTURE(index);
+        World world = draw_world(*problem.uncertainty, problem.robot, 7, index);
+        world.delay_s = 0.003 * static_cast<double>(index);
+        const auto theirs = executed(problem, plan, true, world);
+        const judge::JudgedFlight mine = judge.fly(plan, {true, world});
+        if (theirs) {
+            compare(mine, *theirs);
+        } else {
+            CHECK(mine.outcome == judge::Outcome::unstable);
+        }
+    }
+}
+
 TEST_CASE("A vehicle that starts in motion meets gusts from the first tick on") {
     Problem problem = shipped("bridge_inspection");
     const Plan plan = plan_of(problem, 100);

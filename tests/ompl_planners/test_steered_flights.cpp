@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 
 #include "../support/flight_fixture.hpp"
 #include "downwash/ompl_planners/control_planners.hpp"
@@ -45,7 +44,7 @@ TEST_CASE("a step is a pure function, and flies as the same segment does") {
         const ReferenceSegment segment(from, to, 50, 0.01);
         CHECK(fly(*f.model, f.map.get(), f.flights.rules(), segment, state).rejection == Rejection::none);
     }
-    CHECK(std::memcmp(&state, &a.vehicle, sizeof(state)) == 0);
+    CHECK(is_same(state, a.vehicle));
     CHECK(a.cost == Approx(state.plant.energy_j).epsilon(1e-12));
 }
 

@@ -44,9 +44,9 @@ const Edit edits[] = {
      "coordinates; environment.plane (origin_m, heading_deg) places it in the scene"},
     {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {weather: {}}",
      "13:15: unknown key 'weather' in uncertainty: expected aero, vehicle, sensing or wind"},
-    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {vehicle: {delay_s: {range: [0, 0.2]}}}",
-     "13:34: uncertainty.vehicle.delay_s reaches from 0 to 0.2 s: expected 0 to 3 control ticks, 0.03 s; a "
-     "controller.rate_hz of 15 or less would do, or a narrower {range: [low, high]} of delays"},
+    {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {vehicle: {rotor_time_constant_s: {sd: 0.01}}}",
+     "13:48: uncertainty.vehicle.rotor_time_constant_s is uncertain for rotors without a lag: give the robot its "
+     "rotors.time_constant_s first"},
     {start, "start: {x_m: -4, z_m: 2, arm_deg: 90}\nuncertainty: {}\nplanner: {max_failure_probability: 0}",
      "14:36: planner.max_failure_probability is 0: expected a number from 0.0001 to 0.5\n18:1: planner is written "
      "twice: "

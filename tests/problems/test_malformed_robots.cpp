@@ -113,10 +113,13 @@ const Edit edits[] = {
     {"controller:\n  position: {kp: 2, kd: 2.6}\n  attitude: {kp: 8, rate_kp: 20}\n  arm: {kp: 30, kd: 11}\n  "
      "max_tilt_deg: 35\n",
      "", "1:1: controller is missing: expected a group of keys, to begin with {type: cascaded-pid}"},
-    // Too slow for the delay that the tick can bear: said once, also where a problem takes it over.
-    {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {vehicle: {delay_s: {range: [0, 0.2]}}}",
-     "19:34: uncertainty.vehicle.delay_s reaches from 0 to 0.2 s: expected 0 to 3 control ticks, 0.03 s; a "
-     "controller.rate_hz of 15 or less would do, or a narrower {range: [low, high]} of delays"},
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\n  rate_hz: 1000\n  delay_s: 0.1",
+     "20:12: controller.delay_s is 0.1: expected at most 64 control ticks, 0.064 s; a controller.rate_hz of 640 or "
+     "less would do"},
+    // More than a state can remember: said once, also where a problem takes it over.
+    {"max_tilt_deg: 35", "max_tilt_deg: 35\n  rate_hz: 1000\nuncertainty: {vehicle: {delay_s: {range: [0, 0.2]}}}",
+     "20:34: uncertainty.vehicle.delay_s reaches from 0 to 0.2 s: expected 0 to 64 control ticks, 0.064 s; a "
+     "controller.rate_hz of 320 or less would do, or a narrower {range: [low, high]} of delays"},
     {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {vehicle: {rotor_time_constant_s: {sd: 0.01}}}",
      "19:48: uncertainty.vehicle.rotor_time_constant_s is uncertain for rotors without a lag: give the robot its "
      "rotors.time_constant_s first"},

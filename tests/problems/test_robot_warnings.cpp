@@ -75,14 +75,14 @@ TEST_CASE("thrusts in gram-force are warned of") {
 TEST_CASE("a robot that problems with uncertainty will not take is warned of without one") {
     Robot robot = shipped();
     robot.uncertainty.reset();
-    robot.controller.rate_hz = 250;
-    robot.controller.delay_s = 0.01;
+    robot.controller.rate_hz = 1000;
+    robot.controller.delay_s = 0.05;
     CHECK(warnings_of(robot, "controller.delay_s") ==
           std::vector<std::string>{
-              "is too uncertain by default for problems with an `uncertainty:`: delay_s reaches from 0.005 to 0.015 s: "
-              "expected 0 to 3 control ticks, 0.012 s; a controller.rate_hz of 200 or less would do, or a narrower "
+              "is too uncertain by default for problems with an `uncertainty:`: delay_s reaches from 0.025 to 0.075 s: "
+              "expected 0 to 64 control ticks, 0.064 s; a controller.rate_hz of 853 or less would do, or a narrower "
               "{range: "
               "[low, high]} of delays"});
-    robot.controller.rate_hz = 200;
+    robot.controller.rate_hz = 850;
     CHECK(warnings_of(robot, "controller.delay_s").empty());
 }

@@ -4,6 +4,7 @@
 
 #include "../support/meshes.hpp"
 #include "../support/random.hpp"
+#include "downwash/report/obstacle_drawing.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 #include "pictures.hpp"
 
@@ -115,6 +116,36 @@ TEST_CASE("corners that a mesh repeats for each triangle are one, and cavities r
         REQUIRE(outline.rings.size() == 2);
         CHECK(area(outline) == Approx(16 - 4));
     }
+}
+
+TEST_CASE("parts of a mesh beside the plane are projected, where the plane cuts others") {
+    // A deck that the plane cuts, and two girders below it, one of which touches it along an edge.
+    const Mesh deck = test::moved(box_mesh({4, 2, 1}), {0, 0, 3});
+    const Mesh left = test::moved(box_mesh({4, 0.2, 1}), {0, 0.9, 2});
+    const Mesh right = test::moved(box_mesh({3, 0.2, 0.5}), {0, -0.8, 2});
+    const Mesh bay = test::joined(test::joined(deck, left), right);
+    std::vector<std::array<Vector3, 3>> triangles;
+    for (const auto& [i, j, k] : bay.surface->triangles) {
+        const auto& v = bay.surface->vertices_m;
+        triangles.push_back({v[i], v[j], v[k]});
+    }
+    for (const Mesh& mesh : {bay, test::soup_of(triangles)}) {
+        const ObstacleOutline outline = outline_of(mesh);
+        CHECK(outline.is_cut);
+        CHECK(area(outline) == Approx(4));
+        REQUIRE(outline.beside.size() == 2);
+        ObstacleOutline beside;
+        beside.rings = {outline.beside[0]};
+        const double one = std::abs(area(beside));
+        beside.rings = {outline.beside[1]};
+        CHECK(one + std::abs(area(beside)) == Approx(4 + 1.5));
+        const auto drawn = visible_outlines({outline}, {-5, 5, -5, 5});
+        REQUIRE(drawn.size() == 2);
+        CHECK_FALSE(drawn[1].outline.is_cut);
+        CHECK(drawn[1].outline.name.empty());
+        CHECK(drawn[1].edges.size() >= 2);
+    }
+    CHECK(outline_of(deck, {0, 5, 0}).beside.empty());  // as a whole it is beside
 }
 
 TEST_CASE("a sheet is cut in an open line, an octree cube by cube") {

@@ -191,6 +191,9 @@ void require_drawn_exactly(const std::vector<ObstacleOutline>& outlines, const B
         for (const Ring& ring : outline->rings) {
             dashed_m += outline->is_cut || is_repeated ? 0 : length_within(ring, extent);
         }
+        for (const Ring& ring : outline->beside) {
+            dashed_m += length_within(ring, extent);
+        }
     }
     CHECK(picture.dashed_px == Approx(px_per_m * dashed_m).epsilon(0.002).margin(2));
 }

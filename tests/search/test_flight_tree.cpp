@@ -1,5 +1,4 @@
 #include <catch2/catch.hpp>
-#include <cstring>
 #include <deque>
 #include <vector>
 
@@ -48,7 +47,7 @@ struct Fixture : test::FlightFixture {
 constexpr Configuration below_the_goal{3, 3.6, -test::quarter_turn};
 
 bool same_bytes(const FlightState& a, const FlightState& b) {
-    return std::memcmp(&a, &b, sizeof(FlightState)) == 0;
+    return downwash::is_same(a, b);
 }
 
 /// Edges from one node after the other to the same place, until one of them gets there.

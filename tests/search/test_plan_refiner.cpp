@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cstring>
 
 #include "../support/flight_fixture.hpp"
 #include "../support/same_bytes.hpp"
@@ -70,7 +69,7 @@ TEST_CASE(
                                        plan.reference[i].tick - plan.reference[i - 1].tick, plan.tick_s);
         CHECK(keeps_limits(segment, f.flights.limits()));
         CHECK(fly(*f.model, f.map.get(), f.flights.rules(), segment, state).rejection == Rejection::none);
-        CHECK(std::memcmp(&state, &flown.fleets[i][0], sizeof state) == 0);
+        CHECK(is_same(state, flown.fleets[i][0]));
     }
     const FlightLeg hold = f.flights.hold_leg(plan.reference.back().point);
     CHECK(fly(*f.model, f.map.get(), f.flights.rules(), hold.segment, state).rejection == Rejection::none);
@@ -155,7 +154,7 @@ TEST_CASE("batches that are flown ahead change neither plans nor counts") {
             REQUIRE(a.points == b.points);
             REQUIRE(a.ticks == b.ticks);
             REQUIRE(a.costs == b.costs);
-            REQUIRE(std::memcmp(&a.fleets.back().front(), &b.fleets.back().front(), sizeof(FlightState)) == 0);
+            REQUIRE(is_same(a.fleets.back().front(), b.fleets.back().front()));
             const planning::FlightStatistics& counts = ahead.flights.statistics();
             const planning::FlightStatistics& other = one_by_one.flights.statistics();
             REQUIRE(counts.edges == other.edges);

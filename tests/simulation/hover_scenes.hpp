@@ -73,7 +73,7 @@ inline bool is_same(const FlightLeg& a, const FlightLeg& b) {
     const FlightSums& other_sums = b.flight;
     return a.flight.rejection == b.flight.rejection && a.flight.ticks == b.flight.ticks &&
            std::memcmp(&sums, &other_sums, sizeof sums) == 0 &&
-           a.flight.clearance_integral == b.flight.clearance_integral && std::memcmp(&a.end, &b.end, sizeof a.end) == 0;
+           a.flight.clearance_integral == b.flight.clearance_integral && downwash::is_same(a.end, b.end);
 }
 
 }  // namespace downwash::test

@@ -2,7 +2,6 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include "../support/single_tick.hpp"
@@ -61,7 +60,7 @@ ModelInversion::Memory<double> memory_of(const State& state) {
 }
 
 bool same_bytes(const State& a, const State& b) {
-    return std::memcmp(&a, &b, sizeof(State)) == 0;
+    return is_same(a, b);
 }
 
 /// The first tick from which on a response stays within `band` of its final value.
@@ -227,10 +226,7 @@ TEST_CASE("A flight that is split and resumed from a copied state ends in the sa
         const State start = resting_at(0, 2, 0.3);
         const State whole = flown(model, start, reference, 300);
         const State middle = flown(model, start, reference, 137);
-        unsigned char bytes[sizeof(State)];
-        std::memcpy(bytes, &middle, sizeof(State));
-        State copy;
-        std::memcpy(&copy, bytes, sizeof(State));
+        const State copy = middle;
         CHECK(same_bytes(flown(model, copy, reference, 163), whole));
         CHECK(whole.plant.q[0] > 0.05);  // it did fly
     }
@@ -246,7 +242,7 @@ TEST_CASE("Every number of the state matters to what follows") {
     std::fill(is_missing.plant.thrust_n + model.plant.rotor_count, std::end(is_missing.plant.thrust_n), true);
     std::fill(is_missing.memory.number + number_count<double, ModelInversion::Memory<double>>,
               std::end(is_missing.memory.number), true);  // of other laws
-    for (int i = 0; i < number_count<double, State>; ++i) {
+    for (int i = 0; i < simulation::state_numbers; ++i) {
         State changed = state;
         set_number_at(changed, i, number_at<double>(state, i) + 1e-3);
         changed = flown(model, changed, reference, 2);

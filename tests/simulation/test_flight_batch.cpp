@@ -157,6 +157,18 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("edges fly side by side as one by one where the controller sees many ticks late") {
+    for (const double delay_s : {0.036, 0.045, 0.1}) {
+        CAPTURE(delay_s);
+        Problem problem = cluttered_problem();
+        problem.robot.controller.delay_s = delay_s;
+        for (const bool is_aware : {true, false}) {
+            const auto rejections = rejections_of_equal_flights(problem, is_aware, rules_of(problem), 100);
+            CHECK((rejections.count(Rejection::none) == 1 || delay_s == 0.1));  // so late the loop is unstable
+        }
+    }
+}
+
 TEST_CASE("few flights and many, and flights that end one after the other, come out the same") {
     const Problem problem = cluttered_problem();
     const auto model = make_flight_model(problem);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <complex>
@@ -6,6 +7,7 @@
 #include "../support/error_of.hpp"
 #include "../support/test_robot.hpp"
 #include "downwash/simulation/loop_margins.hpp"
+#include "hover_scenes.hpp"
 
 using namespace downwash;
 using namespace downwash::test;
@@ -29,20 +31,43 @@ std::complex<double> height_loop(const ModelInversion& gains, double tick_s, int
 
 TEST_CASE("The margins of the height loop are those of its transfer function") {
     Robot robot = test_robot();
-    const int delay_ticks = GENERATE(0, 1, 3);
-    robot.controller.delay_s = 0.01 * delay_ticks;
+    const auto [rate_hz, delay_ticks] =
+        GENERATE(table<double, int>({{100, 0}, {100, 1}, {100, 3}, {250, 8}, {1000, 32}}));
+    const double tick_s = 1 / rate_hz;
+    robot.controller.rate_hz = rate_hz;
+    robot.controller.delay_s = tick_s * delay_ticks;
     const ModelInversion& gains = gains_of(robot);
     // The delayed integral adds up what is seen; one more tick of a slow integral is below the tolerances here.
     const LoopMargins margins = of(loop_margins(robot, quarter_turn), LoopInput::thrust);
     double low = 0.5, high = 20;  // the only crossing of 1
     for (int i = 0; i < 60; ++i) {
         const double middle = 0.5 * (low + high);
-        (std::abs(height_loop(gains, 0.01, delay_ticks, middle)) > 1 ? low : high) = middle;
+        (std::abs(height_loop(gains, tick_s, delay_ticks, middle)) > 1 ? low : high) = middle;
     }
     CHECK(margins.crossover_rad_s == Approx(low).epsilon(1e-3));
-    const double phase = std::arg(-height_loop(gains, 0.01, delay_ticks, low));
+    const double phase = std::arg(-height_loop(gains, tick_s, delay_ticks, low));
     CHECK(margins.phase_margin_rad == Approx(phase).epsilon(1e-3));
     CHECK(margins.delay_margin_s == Approx(phase / low).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "half the delay margin of all loops leaves a hover stable, and half more than it does not, however many ticks that "
+    "is") {
+    Robot robot = test_robot();
+    robot.controller.rate_hz = 250;
+    robot.controller.delay_s = 0.02;
+    double least_s = 1;
+    for (const LoopMargins& margins : loop_margins(robot, quarter_turn)) {
+        least_s = std::min(least_s, margins.delay_margin_s);
+    }
+    REQUIRE(least_s > 0.004);
+    REQUIRE((0.02 + 1.5 * least_s) * 250 < simulation::max_delay_ticks);
+    const auto verdict = [&](double further_s) {
+        robot.controller.delay_s = 0.02 + further_s;
+        return analyse_hover(in_free_air(robot), 0, 0, quarter_turn).verdict;
+    };
+    CHECK(verdict(0.5 * least_s) == HoldVerdict::stable);
+    CHECK(verdict(1.5 * least_s) == HoldVerdict::unstable);
 }
 
 TEST_CASE("A loop's gain margin counts where its curve ends, at half the sampling frequency") {

@@ -76,6 +76,13 @@ Robot late_in_wash() {
     return robot;
 }
 
+/// A vehicle that sees up to three ticks late in some worlds and later in the others.
+Robot very_late() {
+    Robot robot = test_robot();
+    robot.controller.delay_s = 0.027;
+    return robot;
+}
+
 Problem problem_with(const Robot& robot) {
     Problem problem = ceiling_problem();
     problem.robot = robot;
@@ -144,7 +151,7 @@ TEST_CASE("The world without any difference is the nominal one, to the last bit"
 
 TEST_CASE("Flights in worlds side by side are those of each alone, to the last bit, on any instructions and threads") {
     const bool is_aware = GENERATE(true, false);
-    const Problem problem = problem_with(GENERATE(real_robot(), late_in_wash()));
+    const Problem problem = problem_with(GENERATE(real_robot(), late_in_wash(), very_late()));
     const bool are_all_nominal = GENERATE(false, true);
     const auto model = make_flight_model(problem);
     const auto map = is_aware ? model->make_map(problem.bounds) : nullptr;
@@ -198,7 +205,7 @@ TEST_CASE("A controller sees what was a delay ago, linear between two ticks") {
     late.delay_s = 0.015;
     const FlownWorld world = make_world(test_robot(), late);
     simulation::WorldMemory<double> memory{};
-    for (int age = 0; age < simulation::max_delay_ticks; ++age) {
+    for (int age = 0; age < simulation::recent_ticks; ++age) {
         memory.past[age].q[0] = -(age + 1.0);
         memory.past[age].u[3] = 10 * (age + 1.0);
     }
@@ -211,7 +218,7 @@ TEST_CASE("A controller sees what was a delay ago, linear between two ticks") {
     hover.reference.position[0] = 0.5;
     std::vector<double> x_m{hover.state.plant.q[0]};
     hover.fly(20, [&](const FlightState& state) {
-        for (std::size_t age = 0; age < simulation::max_delay_ticks && age < x_m.size(); ++age) {
+        for (std::size_t age = 0; age < simulation::recent_ticks && age < x_m.size(); ++age) {
             CHECK(state.world.past[age].q[0] == x_m[x_m.size() - 1 - age]);
         }
         x_m.push_back(state.plant.q[0]);
@@ -307,6 +314,39 @@ TEST_CASE("Flights beside a wall along their plane side by side are those of eac
                   Approx(expected[i].legs[0].flight.min_clearance_m).margin(1e-7));
         }
     }
+}
+
+TEST_CASE("a controller that sees many ticks late remembers so many, and no others do") {
+    World late;
+    late.delay_s = 0.125;
+    Hover hover(test_robot(), late, {0, 2, 0});
+    CHECK(hover.state.world.older.empty());  // it was always there
+    hover.reference.position[0] = 0.5;
+    const double no_noise[simulation::noise_count] = {};
+    std::vector<double> x_m{hover.state.plant.q[0]};
+    hover.fly(30, [&](const FlightState& state) {
+        CHECK(state.world.older.size() == 13 - simulation::recent_ticks);
+        x_m.push_back(state.plant.q[0]);
+        const auto ago = [&](std::size_t ticks) { return ticks < x_m.size() ? x_m[x_m.size() - 1 - ticks] : x_m[0]; };
+        const auto seen = simulation::seen_state(hover.world.numbers, state.plant, state.world, no_noise);
+        CHECK(seen.q[0] == Approx(0.5 * (ago(12) + ago(13))).margin(1e-15));
+        for (int age = 1; age <= 13; ++age) {
+            CHECK(simulation::past_at(state.world, age).q[0] == ago(static_cast<std::size_t>(age)));
+        }
+    });
+    CHECK(x_m.back() > 1e-3);
+
+    late.delay_s = 0.03 * (1 + 1e-12);  // three ticks but for rounding
+    Hover soon(test_robot(), late, {0, 2, 0});
+    soon.fly(5);
+    CHECK(soon.world.numbers.delay_ticks == Approx(3));
+    CHECK(soon.state.world.older.empty());
+    FlightState other = soon.state;
+    CHECK(is_same(other, soon.state));
+    other.world.older.assign(1, other.world.past[simulation::recent_ticks - 1]);
+    CHECK(is_same(other, soon.state));
+    other.world.older[0].q[0] += 1;
+    CHECK_FALSE(is_same(other, soon.state));
 }
 
 TEST_CASE("Bodies fall through air to the speed at which drag carries their weight") {
@@ -540,7 +580,9 @@ TEST_CASE("Gusts have the variance and the spectrum of the Dryden model") {
             }
             double noise[simulation::noise_count];
             simulation::draw_noise(simulation::normal_levels(), own.world.tape, tick, noise, 1);
-            memory = simulation::later(own.numbers, {}, memory, noise);
+            simulation::FlightMemory next;
+            simulation::pass_tick(own.numbers, {}, memory, noise, next);
+            memory = next;
         }
         for (int axis = 0; axis < 2; ++axis) {
             for (int k = 0; k < 6; ++k) {

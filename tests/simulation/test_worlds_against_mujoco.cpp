@@ -24,7 +24,7 @@ double difference_from_mujoco(const Robot& robot, const World& in) {
     const FlownWorld world = make_world(robot, in);
     MujocoWorld mujoco(robot, step_s, in);
     mjData* const data = mujoco.data();
-    simulation::State<double> state{};
+    FlightState state{};
     const double q[4] = {0.1, 1.5, 0.05, 1.2};
     std::copy(q, q + 4, state.plant.q);
     std::copy(q, q + 4, data->qpos);
@@ -51,7 +51,9 @@ double difference_from_mujoco(const Robot& robot, const World& in) {
             }
             return at;
         };
-        state = simulation::tick_in_world(model, law, world.numbers, no_noise, state, reference, calm, given, finely);
+        FlightState next;
+        simulation::tick_in_world(model, law, world.numbers, no_noise, state, reference, calm, given, next, finely);
+        state = next;
         mujoco.command(given.command, model.plant.rotor_count);
         for (int i = 0; i < 10; ++i) {
             mj_step(mujoco.model(), data);

@@ -1,0 +1,153 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/interruption.hpp"
+#include "downwash/cli/output.hpp"
+#include "downwash/cli/plan_origin.hpp"
+#include "downwash/cli/planner_options.hpp"
+#include "downwash/cli/progress.hpp"
+#include "downwash/cli/results.hpp"
+#include "downwash/cli/run_folder.hpp"
+#include "downwash/cli/run_report.hpp"
+#include "downwash/cli/usage_error.hpp"
+#include "downwash/planner/solve.hpp"
+#include "downwash/planner/takeover.hpp"
+#include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/problem_writer.hpp"
+#include "downwash/results/solution_file.hpp"
+
+namespace downwash::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReplanArguments {
+    std::string problem;
+    std::string plan;
+    double at_s = 0;
+    PlannerOptions planner;
+    int threads = default_threads();
+    std::optional<std::string> out;
+    CommandLimits limits;
+    bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, force = false;
+};
+
+/// The problem that the plan was made for: that of its run folder or, where it has none, the one that is given.
+Problem problem_of_plan(const ReplanArguments& given) {
+    const fs::path effective = fs::path(plan_file(given.plan)).parent_path() / "effective.yaml";
+    std::error_code error;
+    return read_problem(fs::exists(effective, error) ? effective : fs::path(given.problem));
+}
+
+std::int64_t tick_at(const ReplanArguments& given, double tick_s) {
+    const double ticks = given.at_s / tick_s;
+    if (!(ticks >= 0 && ticks <= static_cast<double>(max_plan_ticks))) {
+        throw UsageError("--at is {:g}: expected 0 to {:g} s of the plan", given.at_s,
+                         static_cast<double>(max_plan_ticks) * tick_s);
+    }
+    return std::llround(ticks);
+}
+
+/// How the rest of the earlier plan flies in the problem as it is now.
+Replanned fly_rest(const ReplanArguments& given, const Takeover& from, const PlannableProblem& now) {
+    const Problem& problem = now.problem;
+    const Execution rest = execute(*now.model, start_state(*now.model, problem.start), from.rest.reference, from.left,
+                                   problem.aero.enabled);
+    return {given.plan,
+            from.tick,
+            static_cast<double>(from.tick) * from.rest.tick_s,
+            rest.outcome,
+            cost_of(rest, problem.planner.objective),
+            {}};
+}
+
+std::string announcement(const Problem& problem, const Replanned& from) {
+    return fmt::format("{}: planning again from {:.2f} s of {}, whose rest ends {} here; seed {}", problem.name,
+                       from.t_s, from.plan, name_of(from.rest_outcome), problem.planner.seed);
+}
+
+ExitCode run(const ReplanArguments& given) {
+    Interruption interruption(given.limits);
+    require_whole_plan(given.plan);
+    const Problem flown = problem_of_plan(given);
+    const Solution earlier = read_solution(plan_file(given.plan), flown);
+    const Takeover from = take_over(flown, *earlier.plan, earlier.order, tick_at(given, earlier.plan->tick_s));
+    std::vector<LocatedError> warnings;
+    const PlannableProblem plannable = read_plannable_problem(
+        given.problem,
+        [&](Problem& settings) {
+            given.planner.apply_to(settings);
+            settings = remaining(from, std::move(settings));
+        },
+        given.is_quiet ? nullptr : print_outdated, noting(warnings, given.is_quiet));
+    const Problem& read = plannable.problem;
+    const fs::path out = folder_beside_plan(given.out, read, "-replanned", plan_file(given.plan));
+    require_readable_again(read, out);
+    RunFolder folder = claimed_folder(out, read, given.problem, given.force);
+
+    SolveOptions options;
+    options.threads = given.threads;
+    options.stop_at_first_solution = given.stop_at_first;
+    options.keep_tree = true;
+    options.finds_stops = true;
+    options.known_plan = from.rest;
+    options.stop = interruption.token();
+    interruption.expect_results();
+    options.map_cache = cache_folder(given.no_cache);
+    Replanned replanned = fly_rest(given, from, plannable);
+    Solution solution;
+    {
+        ProgressDisplay display(given.is_quiet);
+        display.say(announcement(read, replanned));
+        options.on_progress = [&](const Progress& progress) { display.show(progress); };
+        solution = downwash::solve(plannable, options);
+    }
+    if (solution.plan) {
+        replanned.same_reference_s = same_reference_s(*solution.plan, from.rest);
+    }
+    solution.replanned = std::move(replanned);
+    const RunRecord record = folder.write(read, given.problem, warnings, solution);
+    if (solution.map != nullptr || solution.planning.iterations > 0 || !solution.interrupted) {
+        write_page(folder.path(), record, given.threads);
+    }
+    fmt::print("{}", given.as_json ? record.solution_text
+                                   : summary_of(verdict_on_search(solution), read, solution, folder.path()));
+    return interruption.code() != ExitCode::done ? interruption.code() : exit_code_of(solution);
+}
+
+}  // namespace
+
+void add_replan(Command program, Action& action) {
+    auto [command, given] =
+        add_command(program, action, "replan",
+                    "Plan again for a vehicle that follows a plan, from a moment of it on, in a problem that has "
+                    "changed; write the same files as solve",
+                    run);
+    add_problem(command, given.problem);
+    add_plan(command, given.plan);
+    command.add_option("--at S", given.at_s, "moment of the plan from which the new one takes over, in s").required();
+    for (const std::string_view key :
+         {"planner.variant", "planner.algorithm", "planner.objective", "planner.seed", "planner.time_limit_s",
+          "planner.max_iterations", "planner.safety_margin_m", "planner.check_execution", "planner.certify"}) {
+        given.planner.add(command, key);
+    }
+    add_threads(command, given.threads);
+    add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED-replanned/");
+    add_force(command, given.force);
+    add_wall_limit(command, given.limits.wall_s, "then the best plan so far is written");
+    command.add_flag("--stop-at-first", given.stop_at_first, "end with the first plan that is accepted");
+    add_no_cache(command, given.no_cache);
+    add_quiet(command, given.is_quiet);
+    add_json(command, given.as_json, "solution.json");
+}
+
+}  // namespace downwash::cli

@@ -1,0 +1,123 @@
+#include "downwash/planner/takeover.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <variant>
+
+#include "downwash/base/key_error.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/execution.hpp"
+
+namespace downwash {
+namespace {
+
+bool is_same_contact(const ContactGoal& a, const ContactGoal& b) {
+    return a.obstacle == b.obstacle && a.force_n == b.force_n && a.part == b.part && a.x_m == b.x_m && a.z_m == b.z_m;
+}
+
+/// Whether two goals ask for the same, of whatever kind: they are as far from any vehicle, and allow as much. Of a
+/// contact the places to make it from belong to the scene.
+bool is_same_goal(const Goal& a, const Goal& b, const PlantModel& plant) {
+    if (asks_for_contact(a) && asks_for_contact(b)) {
+        return is_same_contact(std::get<ContactGoal>(a.kind), std::get<ContactGoal>(b.kind));
+    }
+    if (a.kind.index() != b.kind.index() || a.any_of.size() != b.any_of.size()) {
+        return false;
+    }
+    if (!a.any_of.empty()) {
+        return std::ranges::equal(a.any_of, b.any_of,
+                                  [&](const Goal& one, const Goal& other) { return is_same_goal(one, other, plant); });
+    }
+    const auto is_as_far = [&](const PlanarPose& pose) {
+        const GoalDeviation one = goal_deviation(a, plant, pose), other = goal_deviation(b, plant, pose);
+        return one.x_m == other.x_m && one.z_m == other.z_m && one.angle_rad == other.angle_rad;
+    };
+    const GoalTolerance one = tolerance_of(a), other = tolerance_of(b);
+    return a.hold_s == b.hold_s && one.x_m == other.x_m && one.z_m == other.z_m && one.is_disc == other.is_disc &&
+           one.angle_rad == other.angle_rad && is_as_far({0, 0, 0, 0}) && is_as_far({10, 7, 0, 1});
+}
+
+}  // namespace
+
+Takeover take_over(const Problem& flown, const Plan& plan, const std::optional<VisitOrder>& order, std::int64_t tick) {
+    const auto model = make_flight_model(flown);
+    Takeover from;
+    from.tick = tick;
+    from.plant = model->tick().plant;
+    from.start = flown.start;
+    from.rest = plan.rest_after(tick);
+    if (tick > 0) {
+        const FlightPart part = execute_part(*model, start_state(*model, flown.start), plan.beginning(tick).segments(),
+                                             flown.aero.enabled, {});
+        if (part.rejection != Rejection::none) {
+            throw_input_error(
+                "fails before the moment from which to plan again: expected a plan that flies so far; "
+                "`downwash execute` shows how its flight ends",
+                "plan");
+        }
+        from.start = start_of(*model, part.end, plan.at(tick));
+        from.energy_j = part.end.plant.energy_j;
+    }
+    const std::vector<Goal> goals = goals_of(in_order(flown, order));
+    for (const std::size_t knot : hover_ends(*model, plan.reference, goals)) {
+        if (plan.reference[knot].tick <= tick && from.visited.size() + 1 < goals.size()) {
+            const std::size_t next = from.visited.size();
+            const bool is_target = order && !flown.targets.empty() && next < order->visits.size();
+            from.visited.push_back(is_target ? flown.targets[order->visits[next].target] : goals[next]);
+        }
+    }
+    from.left.assign(goals.begin() + static_cast<std::ptrdiff_t>(from.visited.size()), goals.end());
+    return from;
+}
+
+Problem remaining(const Takeover& from, Problem changed) {
+    if (const double rate_hz = 1 / from.rest.tick_s;
+        std::abs(changed.robot.controller.rate_hz - rate_hz) > 1e-6 * rate_hz) {
+        throw_input_error("is " + to_text(changed.robot.controller.rate_hz) + ": expected " + to_text(rate_hz, 6) +
+                              ", that of the robot that flies",
+                          "robot.controller.rate_hz");
+    }
+    changed.start = from.start;
+    const bool had_targets = !changed.targets.empty();
+    if (changed.energy_budget_j) {
+        *changed.energy_budget_j -= from.energy_j;
+        if (!(*changed.energy_budget_j > 0)) {
+            throw_input_error("is spent before this moment: the plan has taken " + to_text(from.energy_j) +
+                                  " J by then: expected more",
+                              "goal.energy_budget_j");
+        }
+    }
+    for (const Goal& visited : from.visited) {
+        const auto is_it = [&](const Goal& goal) { return is_same_goal(goal, visited, from.plant); };
+        if (const auto target = std::ranges::find_if(changed.targets, is_it); target != changed.targets.end()) {
+            changed.targets.erase(target);
+        } else if (!changed.goals_before.empty() && is_it(changed.goals_before.front())) {
+            changed.goals_before.erase(changed.goals_before.begin());
+        }
+    }
+    if (had_targets && changed.targets.empty()) {
+        if (!changed.return_to) {
+            throw_input_error("has no target that was not visited before: nothing is left to plan", "goal");
+        }
+        changed.goal = *changed.return_to;
+        changed.return_to.reset();
+        changed.energy_budget_j.reset();  // of targets only
+    }
+    return changed;
+}
+
+double same_reference_s(const Plan& plan, const Plan& other) {
+    if (plan.reference.empty() || other.reference.empty()) {
+        return 0;
+    }
+    const std::int64_t end = std::max(plan.reference.back().tick, other.reference.back().tick);
+    std::int64_t tick = 0;
+    while (tick <= end && plan.at(tick) == other.at(tick)) {
+        ++tick;
+    }
+    return static_cast<double>(std::max<std::int64_t>(0, tick - 1)) * plan.tick_s;
+}
+
+}  // namespace downwash
