@@ -2,7 +2,6 @@
 
 import * as three from "three";
 
-import {h} from "../dom.js";
 import {opening_of} from "../extents.js";
 import {number} from "../format.js";
 import {pose_at} from "../model.js";
