@@ -18,6 +18,9 @@ if(DOWNWASH_HELP)
   install(FILES ${DOWNWASH_HELP}/downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
   install(FILES ${DOWNWASH_HELP}/_downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions)
   install(FILES ${DOWNWASH_HELP}/downwash.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+  # Where Debian's zsh looks below /usr.
+  install(FILES ${DOWNWASH_HELP}/_downwash DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions
+    COMPONENT debian EXCLUDE_FROM_ALL)
 endif()
 set(DOWNWASH_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/downwash)
 install(DIRECTORY problems/ DESTINATION ${DOWNWASH_INSTALL_DATADIR}/problems
@@ -32,6 +35,10 @@ if(NOT BUILD_SHARED_LIBS)
 endif()
 
 get_property(modules GLOBAL PROPERTY DOWNWASH_MODULES)
+set(in_wheel "")
+if(TARGET downwash_python)
+  downwash_linked_targets(in_wheel downwash_python)
+endif()
 set(DOWNWASH_PKGCONFIG_LIBS "")
 foreach(module IN LISTS modules)
   # The component ompl needs OMPL, so it is exported apart.
@@ -43,6 +50,12 @@ foreach(module IN LISTS modules)
   install(TARGETS downwash_${module} EXPORT ${export}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
     PUBLIC_HEADER DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/downwash/${module})
+  if(downwash_${module} IN_LIST in_wheel)
+    # Beside the module. The headers of this component are never installed.
+    install(TARGETS downwash_${module}
+      LIBRARY DESTINATION downwash COMPONENT wheel EXCLUDE_FROM_ALL NAMELINK_SKIP
+      PUBLIC_HEADER DESTINATION downwash COMPONENT no_headers EXCLUDE_FROM_ALL)
+  endif()
   if(NOT module STREQUAL ompl)
     string(PREPEND DOWNWASH_PKGCONFIG_LIBS "-ldownwash_${module} ")
   endif()
@@ -70,3 +83,5 @@ file(RELATIVE_PATH DOWNWASH_PKGCONFIG_PREFIX /prefix/${pkgconfig_dir} /prefix)
 string(REGEX REPLACE "/$" "" DOWNWASH_PKGCONFIG_PREFIX ${DOWNWASH_PKGCONFIG_PREFIX})
 configure_file(cmake/downwash.pc.in ${PROJECT_BINARY_DIR}/cmake/downwash.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/cmake/downwash.pc DESTINATION ${pkgconfig_dir})
+
+include(cmake/package.cmake)

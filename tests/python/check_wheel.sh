@@ -17,5 +17,6 @@ if (cd "$work" && PYTHONPATH=$work "$python" -S "$root/setup.py" egg_info) 2>"$w
     echo "setup.py went on without a package that makes wheels"
     exit 1
 fi
+# shellcheck disable=SC2016 # the text itself
 grep -qF 'has no package `wheel`' "$work/errors"
 grep -qF '/usr/bin/python3 -m venv --system-site-packages' "$work/errors"

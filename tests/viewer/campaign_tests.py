@@ -11,7 +11,7 @@ import sample_campaign
 from packing import write_page
 from sample_page import HOSTILE
 
-FIGURES = ["outcomes", "worlds", "flown-costs", "cost-shares", "success", "costs", "first-solutions", "pairs"]
+FIGURES = ["worlds", "outcomes", "flown-costs", "cost-shares", "success", "costs", "first-solutions", "pairs"]
 
 
 class Campaign(page_test.BrowserTest):
@@ -37,13 +37,63 @@ class Campaign(page_test.BrowserTest):
         self.assertEqual(self.browser.complaints(), [])
         self.assertEqual(self.browser.requests(), [])
 
-    def test_flights_that_held_come_first_and_a_plan_that_failed_is_no_success(self):
+    def test_flights_in_worlds_lead_where_there_are_any(self):
+        # Flights that held in the nominal world would name the second planner first, and it fails in most worlds.
+        figures = sample_campaign.campaign()
+        for totals, held, certified, plans, failed in ((figures["totals"][0], 5, 5, 5, 0), (figures["totals"][1], 9, 0, 9, 240)):
+            totals.update(held=sample_campaign.share(held, 10), failed_flights=sample_campaign.share(0, 10))
+            totals["in_worlds"].update(tested=10, certified=sample_campaign.share(certified, 10), flown=plans,
+                                       failed=sample_campaign.share(failed, 50 * plans))
+        self.show(figures)
+        tiles = self.every(".of-planners > div", "[...e.querySelectorAll('dd span')].map(s => s.textContent)")
+        self.assertEqual(tiles[0][:2], ["250 of 250", "flights in other worlds held, of 5 plans"])
+        self.assertEqual(tiles[1][:2], ["210 of 450", "flights in other worlds held, of 9 plans"])
+        self.assertIn("failed: 53.3 %", tiles[1][2])
+        self.assertEqual(tiles[0][3:], ["certified plans: 5 of 10 seeds", "held in the nominal world: 5 of 10 seeds"])
+        self.assertEqual(tiles[1][3:], ["certified plans: 0 of 10 seeds", "held in the nominal world: 9 of 10 seeds"])
+        self.assertEqual(self.every("section.figure h2", "e.textContent")[:2],
+                         ["Failures in worlds", "Flights in the nominal world"])
+        self.assertIn("certified 20 of 20 seeds", self.one("#worlds .panel", "e.textContent"))
+        self.assertEqual(self.one("#tables h3", "e.textContent"), "In other worlds")
+        self.assertIn("in the nominal world", self.one(".verdict-text p", "e.textContent"))
+
+    def test_a_planner_without_plans_has_its_row_among_flights_in_worlds(self):
+        figures = sample_campaign.campaign()
+        figures["cells"][1]["in_worlds"] = None
+        self.show(figures)
+        self.assertIn("mp-arm-da: no plan to fly", self.one("#worlds .panel", "e.textContent"))
+        self.assertEqual(len(self.every("#worlds .panel:first-of-type .dot", "1")), 2)
+
+    def test_certificates_lead_where_no_plan_was_flown_in_worlds(self):
+        figures = sample_campaign.campaign()
+        for each in figures["cells"] + figures["totals"]:
+            each["in_worlds"].update(flown=0, failed=sample_campaign.share(0, 0))
+        self.show(figures)
+        tiles = self.every(".of-planners > div", "[...e.querySelectorAll('dd span')].map(s => s.textContent)")
+        self.assertEqual(tiles[0][:3], ["40 of 40", "certified plans", "flights that held: 40 of 40"])
+        self.assertEqual(self.one("section.figure", "e.id"), "outcomes")
+
+    def test_one_problem_uses_the_width(self):
+        for problems, columns in ((["bridge"], 1), (["bridge", "pipe_rack"], 2)):
+            with self.subTest(problems=problems):
+                self.browser.resize(1440, 900)
+                self.show(sample_campaign.campaign(problems=problems))
+                left, right = self.one(".campaign-figures", "(b => [b.left, b.right])(e.getBoundingClientRect())")
+                seen = self.every(".campaign-figures .panel", "(b => [b.left, b.right])(e.getBoundingClientRect())")
+                self.assertAlmostEqual(min(x for x, _ in seen), left, delta=1)
+                self.assertAlmostEqual(max(x for _, x in seen), right, delta=1)
+                first = self.every("#worlds .panel", "e.getBoundingClientRect().width")
+                self.assertEqual(len(first), len(problems))
+                self.assertGreater(min(first), 0.45 * (right - left))
+                for low, high in seen:
+                    self.assertGreater(high - low, 0.4 * (right - left))
+
+    def test_a_plan_that_failed_is_no_success(self):
         figures = sample_campaign.campaign()
         cell = figures["cells"][2]  # mp-arm: 20 plans, of which 3 fly, 14 fail and 3 were never found
         cell.update(solved=sample_campaign.share(17, 20), held=sample_campaign.share(3, 20),
                     failed_flights=sample_campaign.share(14, 20))
         self.show(figures)
-        self.assertEqual(self.one("section.figure", "e.id"), "outcomes")
         widths = self.js("return [...document.querySelectorAll('#outcomes .panel')[0].querySelectorAll('.outcome.series-2')]"
                          ".map(e => [e.classList[1], Number(e.getAttribute('width'))])")
         whole = sum(width for _, width in widths)
@@ -66,10 +116,12 @@ class Campaign(page_test.BrowserTest):
 
     def test_no_figure_of_worlds_without_flights_in_worlds(self):
         figures = sample_campaign.campaign()
-        for cell in figures["cells"]:
-            cell["in_worlds"] = None
+        for each in figures["cells"] + figures["totals"]:
+            each["in_worlds"] = None
         self.show(figures)
         self.assertEqual(self.js("return document.querySelectorAll('#worlds').length"), 0)
+        self.assertEqual(self.one("section.figure", "e.id"), "outcomes")
+        self.assertEqual(self.one(".of-planners dd", "e.querySelectorAll('span')[1].textContent"), "flights that held")
 
     def test_axes_have_ticks_however_short_they_are(self):
         for low, high in ((0.11, 0.13), (1.2, 1.9), (0.3, 0.9), (0.002, 0.5)):
@@ -173,7 +225,7 @@ class Campaign(page_test.BrowserTest):
             cell["seeds"] = {name: [] for name in cell["seeds"]}
         figures.update(runs_done=0, comparisons=[], failures=[])
         for totals in figures["totals"]:
-            totals.update(failed_flights=sample_campaign.share(0, 0), held=sample_campaign.share(0, 0))
+            totals.update(failed_flights=sample_campaign.share(0, 0), held=sample_campaign.share(0, 0), in_worlds=None)
         self.assertTrue(self.show(figures))
         self.assertEqual(self.browser.complaints(), [])
 

@@ -73,6 +73,46 @@ class Looks(page_test.BrowserTest):
                     self.open(case)
                     self.assertLess(self.one(".scene-svg", "e.getBoundingClientRect().bottom"), height)
 
+    def test_playback_stands_in_the_first_screen_too(self):
+        for width, height in ((1440, 900), (390, 844)):
+            with self.subTest(width=width):
+                self.browser.resize(width, height, mobile=width < 700)
+                self.open("solved")
+                self.assertLess(self.one(".playback", "e.getBoundingClientRect().bottom"), height)
+
+    def test_words_in_the_scene_overlap_neither_each_other_nor_a_vehicle(self):
+        pad = 1
+        for case in ("solved", "solids", "five-goals"):
+            for width in (1440, 1280, 390):
+                for seconds in (0, 4.4, 9, 15):
+                    with self.subTest(case=case, width=width, seconds=seconds):
+                        self.browser.resize(width, 900, mobile=width < 700)
+                        self.open(case)
+                        self.set_time(seconds)
+                        boxes = ".map(b => [b.left, b.top, b.right, b.bottom, b.of])"
+                        box = "({...e.getBoundingClientRect().toJSON(), of: e.textContent})"
+                        words = self.js(
+                            "return [...document.querySelectorAll('.words .word')]"
+                            f".filter(e => getComputedStyle(e).visibility !== 'hidden').map(e => {box}){boxes}")
+                        self.assertGreater(len(words), 4)
+                        parts = self.js(
+                            "return [...document.querySelectorAll('.vehicle.flown :is(.body, .disc)')]"
+                            f".map(e => {box}){boxes}")
+                        self.assertGreater(len(parts), 8)
+                        # The arm is a line: points along it, not the box around it.
+                        points = self.js(
+                            "return [...document.querySelectorAll('.vehicle.flown .arm')].flatMap(e => {"
+                            "const m = e.getScreenCTM(), l = e.getTotalLength();"
+                            "return [0, .2, .4, .6, .8, 1].map(s => e.getPointAtLength(s * l).matrixTransform(m))"
+                            ".map(({x, y}) => [x, y, x, y, 'arm']); })")
+                        for i, word in enumerate(words):
+                            # Half of a line's height is room around its letters.
+                            low, high = word[1] + 3, word[3] - 3
+                            for other in words[:i] + parts + points:
+                                apart = (word[2] <= other[0] + pad or other[2] <= word[0] + pad or
+                                         high <= other[1] + pad or other[3] <= low + pad)
+                                self.assertTrue(apart, (word, other))
+
     def test_the_buttons_of_the_scene_cover_nothing_of_it(self):
         for width in (1280, 390):
             self.browser.resize(width, 900, mobile=width < 700)
@@ -101,7 +141,7 @@ class Looks(page_test.BrowserTest):
         try:
             self.assertGreater(min(self.background()), 230)
             is_seen = "return document.querySelector(arguments[0]).getBoundingClientRect().width > 0"
-            for selector in (".playback", ".layers", ".readout", ".view3d", ".vehicle.now", ".theme"):
+            for selector in (".playback", ".layers", ".readout", ".view-choice", ".vehicle.now", ".theme"):
                 self.assertFalse(self.js(is_seen, selector), selector)
             for selector in (".snapshots .vehicle", ".plot-svg", ".verdict", ".figures", ".map image"):
                 self.assertTrue(self.js(is_seen, selector), selector)
@@ -211,19 +251,91 @@ class InThreeDimensions(page_test.BrowserTest):
     browser_arguments = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 
     def open_3d(self):
-        self.assertEqual(self.js("return document.querySelectorAll('canvas').length"), 0)
+        self.assertEqual(self.js("return document.querySelectorAll('#page canvas').length"), 0)
         self.js("document.querySelector('.open-3d').click()")
         for _ in range(100):
             if self.js("return document.querySelector('.stage').dataset.state ?? ''"):
                 break
             time.sleep(0.1)
         self.assertEqual(self.js("return document.querySelector('.stage').dataset.state"), "open",
-                         self.js("return document.querySelector('.view3d [role=status]').textContent"))
+                         self.js("return document.querySelector('.space-note').textContent"))
 
     def shown_names(self):
         time.sleep(0.3)
         return [text.strip("\u2068\u2069") for text in
                 self.every(".name3d", "getComputedStyle(e).display === 'none' ? '' : e.textContent")]
+
+    def picture(self):
+        box = self.one(".stage", "e.getBoundingClientRect().toJSON()")
+        sides = tuple(int(box[side]) for side in ("left", "top", "right", "bottom"))
+        return Image.open(io.BytesIO(self.browser.screenshot())).crop(sides)
+
+    def test_takes_the_place_of_the_view_from_the_side_above_its_playback(self):
+        for width, height in ((1440, 900), (390, 844)):
+            with self.subTest(width=width):
+                self.browser.resize(width, height, mobile=width < 700)
+                self.open("solids")
+                frame = "(b => [b.left, b.top, b.right, b.bottom])(e.getBoundingClientRect())"
+                before = self.one(".scene-svg", frame)
+                self.open_3d()
+                self.browser.settle()
+                self.assertEqual(self.one(".stage", frame), before)
+                self.assertEqual(self.one(".scene-svg", "getComputedStyle(e).visibility"), "hidden")
+                self.assertLess(self.one(".playback", "e.getBoundingClientRect().bottom"), height)
+                self.assertEqual(self.every(".of-side", "e.getBoundingClientRect().width > 0 && e.className"), [False] * len(
+                    self.every(".of-side", "1")))
+                self.assertGreater(np.asarray(self.picture().convert("L")).std(), 8)
+                # Space plays at once, and what moves is what is shown.
+                still = self.js("return document.querySelector('.stage').view.tip()")
+                self.press(" ", target="document.activeElement")
+                time.sleep(0.6)
+                self.press(" ", target="document.activeElement")
+                self.assertGreater(self.js("return downwash.row"), 10)
+                self.assertNotEqual(self.js("return document.querySelector('.stage').view.tip()"), still)
+                self.js("document.querySelector('.view-choice button').click()")
+                self.assertEqual(self.one(".scene-svg", "getComputedStyle(e).visibility"), "visible")
+                self.assertEqual(self.one(".stage", "getComputedStyle(e).display"), "none")
+                self.assertEqual(self.one(".space-note", "e.textContent"), "")
+
+    def test_its_buttons_come_nearer_and_go_back(self):
+        self.open("solids")
+        self.open_3d()
+        across = "const v = document.querySelector('.stage').view; return v.seen_at(1, 9)[0] - v.seen_at(0, 9)[0]"
+        before = self.js(across)
+        self.js("document.querySelector('.zoom-tools button').click()")
+        self.assertGreater(self.js(across), 1.2 * before)
+        self.js("[...document.querySelectorAll('.zoom-tools button')].find(b => b.textContent === 'Flight').click()")
+        self.assertAlmostEqual(self.js(across), before, places=6)
+
+    def test_prints_the_view_from_the_side(self):
+        self.open("solids")
+        self.open_3d()
+        self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+        try:
+            self.assertEqual(self.one(".scene-svg", "getComputedStyle(e).visibility"), "visible")
+            self.assertEqual(self.one(".stage", "getComputedStyle(e).display"), "none")
+        finally:
+            self.browser.driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+    def test_names_lie_on_no_other_and_not_on_the_vehicle(self):
+        self.open("solids")
+        self.open_3d()
+        for seconds in (0, 6, 15):
+            self.set_time(seconds)
+            time.sleep(0.3)
+            boxes = self.every(".name3d", "getComputedStyle(e).display === 'none' ? null : "
+                               "(b => [b.left, b.top, b.right, b.bottom])(e.getBoundingClientRect())")
+            boxes = [box for box in boxes if box]
+            self.assertGreater(len(boxes), 5)
+            row = self.js("return downwash.row")
+            stage = self.one(".stage", "e.getBoundingClientRect().toJSON()")
+            x, y = self.js("const d = downwash.data; return document.querySelector('.stage').view"
+                           ".seen_at(d.x_m[arguments[0]], d.z_m[arguments[0]])", row)
+            body = [stage["left"] + x * stage["width"], stage["top"] + y * stage["height"]] * 2
+            for i, box in enumerate(boxes):
+                for other in boxes[:i] + [body]:
+                    self.assertTrue(box[2] <= other[0] or other[2] <= box[0] or box[3] <= other[1] or other[3] <= box[1],
+                                    (seconds, box, other))
 
     def test_goals_are_where_and_as_large_as_in_the_scene(self):
         def change(report):
@@ -244,10 +356,7 @@ class InThreeDimensions(page_test.BrowserTest):
         names = self.shown_names()
         self.assertIn("start", names)
         self.assertNotIn("deck", names)
-        self.js("document.querySelector('.stage').scrollIntoView({block: 'center'})")
-        box = self.one(".stage", "e.getBoundingClientRect().toJSON()")
-        sides = tuple(int(box[side]) for side in ("left", "top", "right", "bottom"))
-        picture = Image.open(io.BytesIO(self.browser.screenshot())).crop(sides)
+        picture = self.picture()
         self.assertGreater(np.asarray(picture.convert("L")).std(), 8)
 
     def test_opens_on_demand_and_follows_the_slider(self):
@@ -262,21 +371,18 @@ class InThreeDimensions(page_test.BrowserTest):
         names = self.shown_names()
         for name in ("deck", "pier", "walkway", "goal 2", "start"):
             self.assertIn(name, names)
-        self.assertIn("squares are 2\u00a0m wide", self.one(".view3d [role=status]", "e.textContent"))
+        self.assertIn("squares are 2\u00a0m wide", self.one(".space-note", "e.textContent"))
         self.assertIn("x\u00a0−8\u00a0m".replace("\u00a0", " "), [name.replace("\u00a0", " ") for name in names])
         flight = [self.js("return document.querySelector('.stage').view.seen_at(...arguments)", columns["x_m"][row],
                           columns["z_m"][row]) for row in range(0, len(columns["t_s"]), 100)]
         across = [x for x, _ in flight]
         self.assertTrue(all(0 < value < 1 for point in flight for value in point), "the camera sees the whole flight")
         self.assertGreater(max(across) - min(across), 0.5)
-        self.js("document.querySelector('.stage').scrollIntoView({block: 'center'})")
-        box = self.one(".stage", "e.getBoundingClientRect().toJSON()")
-        sides = tuple(int(box[side]) for side in ("left", "top", "right", "bottom"))
-        picture = Image.open(io.BytesIO(self.browser.screenshot())).crop(sides)
+        picture = self.picture()
         self.assertGreater(np.asarray(picture.convert("L")).std(), 8)
         saturation = np.asarray(picture.convert("HSV"))[:, :, 1]
         self.assertGreater((saturation > 60).mean(), 0.02, "surface effects, paths and vehicle have colours")
-        self.js("document.querySelector('.view3d-bar input').click()")
+        self.js("document.querySelector('.layers.of-space input').click()")
         row = self.js("return downwash.row")
         seen = self.js("return document.querySelector('.stage').view.seen_at(...arguments)", columns["x_m"][row],
                        columns["z_m"][row])
@@ -296,4 +402,4 @@ class WithoutWebGl(page_test.BrowserTest):
         self.open("solved")
         self.js("document.querySelector('.open-3d').click()")
         time.sleep(0.3)
-        self.assertIn("no WebGL", self.js("return document.querySelector('.view3d [role=status]').textContent"))
+        self.assertIn("no WebGL", self.js("return document.querySelector('.space-note').textContent"))

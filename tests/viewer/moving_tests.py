@@ -129,6 +129,39 @@ class Moving(page_test.BrowserTest):
         self.assertFalse(self.js("return downwash.is_playing"))
         self.assertGreater(self.js(row), 10)
 
+    def touch(self, kind, *points):
+        self.browser.driver.execute_cdp_cmd("Input.dispatchTouchEvent", {
+            "type": kind, "touchPoints": [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]})
+
+    def test_a_tap_on_the_picture_plays_and_pauses_and_a_moving_or_second_finger_does_not(self):
+        self.browser.resize(390, 844, mobile=True)
+        self.browser.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True})
+        try:
+            self.open("solved")
+            is_playing = "return downwash.is_playing"
+            x, y = self.middle_of(".scene-svg")
+            for wanted in (True, False):
+                self.touch("touchStart", (x, y))
+                self.touch("touchEnd")
+                self.browser.settle()
+                self.assertEqual(self.js(is_playing), wanted)
+            self.touch("touchStart", (x, y))
+            self.touch("touchMove", (x + 40, y))
+            self.touch("touchEnd")
+            self.touch("touchStart", (x, y))
+            self.touch("touchStart", (x, y), (x + 60, y))
+            self.touch("touchEnd")
+            self.browser.settle()
+            self.assertFalse(self.js(is_playing))
+            # Fingers find the buttons.
+            for selector in (".play", ".speed select"):
+                self.assertGreaterEqual(self.one(selector, "e.getBoundingClientRect().height"), 44)
+            for selector in (".zoom-tools button", ".view-choice button"):
+                self.assertGreaterEqual(self.one(selector, "e.getBoundingClientRect().height"), 40)
+            self.assertLess(self.one(".playback", "e.getBoundingClientRect().bottom"), 844)
+        finally:
+            self.browser.driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": False})
+
     def test_a_space_on_a_control_belongs_to_the_control(self):
         self.open("solved")
         self.press(" ", target="document.querySelector('[data-toggle=map]')")

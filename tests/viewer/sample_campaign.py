@@ -87,7 +87,10 @@ def campaign(problems=("bridge", "pipe_rack"), seeds=20, margins=(None,), parame
         attempts = seeds * len(problems)
         totals.append({**name, "solved": share(attempts, attempts), "discarded": 0,
                        "failed_flights": share(sum(c["failed_flights"]["hits"] for c in own), attempts),
-                       "held": share(sum(c["held"]["hits"] for c in own), attempts)})
+                       "held": share(sum(c["held"]["hits"] for c in own), attempts),
+                       "in_worlds": {**own[0]["in_worlds"], "tested": attempts, "flown": attempts, "alone": [],
+                                     "certified": share(sum(c["in_worlds"]["certified"]["hits"] for c in own), attempts),
+                                     "failed": share(sum(c["in_worlds"]["failed"]["hits"] for c in own), 10 * attempts)}})
     comparisons = [comparison(f"{cells[i]['problem']}, energy", cells[i], cells[i + 1])
                    for i in range(0, len(cells), count)]
     failures = [{"experiment": f"{c['problem']}, energy", "planner": c["planner"], "cause": "collision",

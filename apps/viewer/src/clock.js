@@ -1,4 +1,4 @@
-// The one moment that scene, plots, read-out and 3-D view show: a row of the flight.
+// The one moment that scene, plots, read-out and view in space show: a row of the flight.
 
 /** @param {Float64Array} times_s */
 export function make_clock(times_s) {

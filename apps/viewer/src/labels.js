@@ -9,7 +9,17 @@ const line_height = 14;
 const name_length = 26;
 const most_names = 200;
 
-const width_of = (text) => Math.min(220, 6.6 * [...text].length);
+const ruler = document.createElement("canvas").getContext("2d");
+ruler.font = "600 11.5px system-ui, sans-serif";  // the bolder one of the words' fonts
+const widths = new Map();
+
+/** Of a word, in pixels. */
+function width_of(text) {
+    if (!widths.has(text)) {
+        widths.set(text, ruler.measureText(text).width);
+    }
+    return widths.get(text);
+}
 
 function overlaps(a, b) { return a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]; }
 
@@ -38,14 +48,17 @@ export class Placement {
     }
 }
 
-/** What moves has the right of way: words that stand still vanish below it. */
-export function give_way(words, moving) {
+/**
+ * What moves has the right of way: words that stand still vanish below it.
+ * @param {SVGElement[]} moving words   @param {number[][]} boxes of other things, in pixels
+ */
+export function give_way(words, moving, boxes) {
     const box_of = (element) => {
         const x = Number(element.getAttribute("x")), y = Number(element.getAttribute("y"));
         const half = width_of(element.textContent) / 2;
         return [x - half, y - line_height / 2, x + half, y + line_height / 2];
     };
-    const taken = moving.map(box_of);
+    const taken = [...moving.map(box_of), ...boxes];
     for (const element of words.querySelectorAll(".word")) {
         const box = box_of(element);
         element.style.visibility = taken.some((other) => overlaps(box, other)) ? "hidden" : "";
@@ -137,7 +150,11 @@ export function draw_snapshot_times(view, {data}, rows, placement) {
         const away = 0.2 * view.pixels_per_m + 9;
         const sides = data.ee_z_m[row] < data.z_m[row] - 0.1 ? [-1, 1] : [1, -1];
         const found =
-            placement.find(text, sides.flatMap((side) => [0, 12].map((more) => [x, y + side * (away + more)])));
+            placement.find(
+                text,
+                [0, -24, 24].flatMap(
+                    (aside) => sides.flatMap(
+                        (side) => [0, 12].map((more) => [x + aside, y + side * (away + more)]))));
         if (found) {
             marks.push(word("of-time", ...found, text));
         }

@@ -31,24 +31,33 @@ function show_trouble(page, error, theme) {
 function assemble(page, model, theme) {
     const clock = model.data ? make_clock(model.data.t_s) : null;
     const playback = clock ? make_playback(model, clock) : null;
-    const scene = make_scene(model, clock, playback);
+    const space = make_view3d(model, clock, theme);
+    const scene = make_scene(model, clock, playback, space);
     const plots = clock ? make_plots(model, clock, playback) : null;
     page.replaceChildren(
         h("a", {class: "skip screen-only", href: "#scene"}, "To the scene"), make_head(model, theme.element),
         h("main", {class: "of-run"}, make_verdict(model), make_figures(model),
           h("section", {class: `explore${clock ? "" : " alone"}`, "aria-label": "Scene and plots"},
             h("div", {class: "scene-side", id: "scene"},
-              h("div", {class: "scene-bar"}, h("h2", null, clock ? "Flight" : "Scene"), scene.tools), scene.element,
+              h("div", {class: "scene-bar"}, h("h2", null, clock ? "Flight" : "Scene"), space.choice, scene.tools),
+              scene.element,
               clock ? make_readout(model, clock) : null,
               h("p", {class: "hint for-keys muted screen-only"},
                 clock ? "Space plays; ← → move by a tick, with shift by a second; Home and End go to the ends. " : "",
-                "Drag moves the scene; the wheel zooms it once it has been clicked, or with Ctrl; " +
-                    "in focus: + − 0 and W A S D."),
-              h("p", {class: "hint for-fingers muted screen-only"}, "Two fingers zoom and move the scene",
-                clock ? "; a finger along a plot moves the vehicle." : "."),
+                h("span", {class: "of-side"},
+                  "Drag moves the scene; the wheel zooms it once it has been clicked, or with Ctrl; " +
+                      "in focus: + − 0 and W A S D."),
+                h("span", {class: "of-space"},
+                  "Drag turns the view, the wheel comes nearer, the right button moves; " +
+                      "in focus: W A S D turn, + and − come nearer, 0 goes back.")),
+              h("p", {class: "hint for-fingers muted screen-only"},
+                clock ? "A tap on the picture plays and pauses. " : "",
+                h("span", {class: "of-side"}, "Two fingers zoom and move the scene."),
+                h("span", {class: "of-space"}, "A finger turns the view; two fingers zoom and move it."),
+                clock ? " A finger along a plot moves the vehicle." : ""),
               make_obstacle_table(model)),
             plots ? h("div", {class: "plot-side"}, h("h2", null, "Over time", plots.moment), plots.element) : null),
-          make_certificate(model), make_search(model), make_view3d(model, clock, theme), make_repeat(model)),
+          make_certificate(model), make_search(model), make_repeat(model)),
         make_foot(model.report.version, licences));
     document.title = `${model.solution.problem?.name ?? "Run"} · Downwash`;
     if (clock && model.is_cut_short) {

@@ -1,4 +1,4 @@
-// Slider, play, speed and keys.
+// Slider, play, speed, keys and taps.
 
 import {h} from "./dom.js";
 import {seconds} from "./format.js";
@@ -20,6 +20,24 @@ function has_own_use(target, key) {
     return (key === " " || key === "Enter") &&
         target.closest("button, summary, a, input[type=checkbox], input[type=radio]") !== null ||
         (key.startsWith("Arrow") && target.closest("input[type=radio]") !== null);
+}
+
+/** A short touch of one finger that stays where it is; fingers that move or pinch are for the picture. */
+function when_tapped(element, act) {
+    const most_ms = 350, most_pixels = 10;
+    let tap = null;
+    element.addEventListener("pointerdown", (touched) => {
+        const is_first = touched.pointerType === "touch" && touched.isPrimary;
+        tap = is_first ? {at_ms: touched.timeStamp, x: touched.clientX, y: touched.clientY} : null;
+    });
+    element.addEventListener("pointercancel", () => { tap = null; });
+    element.addEventListener("pointerup", (lifted) => {
+        if (tap && lifted.timeStamp - tap.at_ms < most_ms &&
+            Math.hypot(lifted.clientX - tap.x, lifted.clientY - tap.y) < most_pixels) {
+            act();
+        }
+        tap = null;
+    });
 }
 
 /** @param {AbortSignal} [signal] ends what keys do on the page */
@@ -125,5 +143,12 @@ export function make_playback(model, clock, signal) {
           h("div", {class: "time-track"}, slider, h("div", {class: "marks", "aria-hidden": "true"}, marks)),
           h("span", {class: "time-box"}, readout, h("span", {class: "muted"}, ` / ${seconds(model.end_s)}`)),
           h("label", {class: "speed"}, h("span", {class: "visually-hidden"}, "Speed"), speed));
-    return {element, slider, toggle, pause, get is_playing() { return playing !== null; }};
+    return {
+        element,
+        slider,
+        toggle,
+        pause,
+        plays_on_tap: (picture) => when_tapped(picture, toggle),
+        get is_playing() { return playing !== null; },
+    };
 }

@@ -7,12 +7,11 @@ import {point, quantity, seconds} from "./format.js";
 import {draw_obstacle_names, draw_place_names, draw_snapshot_times, give_way, names_of, Placement} from "./labels.js";
 import {draw_map, make_color_bar} from "./map_layer.js";
 import {pose_at, reference_at} from "./model.js";
-import {extent_of} from "./numbers.js";
 import {draw_flown, draw_planned, draw_snapshots, draw_tip, draw_tree, draw_waypoints, snapshot_rows} from "./paths.js";
 import {make_pointer_text} from "./pointer.js";
 import {keep_sized} from "./sizing.js";
-import {draw_bounds, draw_goals, draw_obstacles, draw_start, is_cut, make_hatches} from "./surroundings.js";
-import {make_vehicle, vehicle_at} from "./vehicle.js";
+import {draw_bounds, draw_goals, draw_obstacles, draw_start, goal_region, is_cut, make_hatches, wanted_pose} from "./surroundings.js";
+import {make_vehicle, vehicle_at, vehicle_boxes} from "./vehicle.js";
 import {View} from "./view.js";
 import {goal_name} from "./words.js";
 
@@ -40,15 +39,8 @@ function draw_trouble(view, x_m, z_m) {
         s("path", {d: "M-4 -4L4 4M-4 4L4 -4"}));
 }
 
-/** Words stay off the bodies of snapshots. */
-function body_box(view, robot, x_m, z_m) {
-    const {x_m: across, z_m: up} = extent_of(robot.bodies.map((body) => body.outline));
-    const [left, top] = view.to_pixels(x_m + across[0], z_m + up[1]);
-    const [right, bottom] = view.to_pixels(x_m + across[1], z_m + up[0]);
-    return [left, top, right, bottom];
-}
-
-export function make_scene(model, clock, playback) {
+/** @param space the view in space, of a page that has one */
+export function make_scene(model, clock, playback, space = null) {
     const {data, robot, rotor_groups, scene, solution} = model;
     const view = new View(padded(scene.bounds), data ? opening_of(model) : padded(scene.bounds), describe(model));
     make_hatches(view);
@@ -128,6 +120,7 @@ export function make_scene(model, clock, playback) {
             {x_m: obstruction.x_m, z_m: obstruction.z_m, pitch_rad: 0, arm_rad: obstruction.arm_rad}));
     }
 
+    const boxes_at = (pose) => vehicle_boxes(view, robot, rotor_groups, pose);
     view.follow(() => {
         const scale = view.pixels_per_m;
         view.svg.style.setProperty("--arm-width", `${Math.max(2.2, 2 * robot.arm.radius_m * scale)}px`);
@@ -142,9 +135,13 @@ export function make_scene(model, clock, playback) {
             const [x, y] = view.to_pixels(...trouble);
             placement.reserve([x - 12, y - 12, x + 12, y + 12]);
         }
-        for (const row of shown.snapshots ? rows : []) {
-            placement.reserve(body_box(view, robot, data.x_m[row], data.z_m[row]));
-        }
+        // Words stay off all vehicles that stand still.
+        const wanted = model.goals.map((goal) => wanted_pose(goal, goal_region(goal, scene.bounds)));
+        const stopped = data ? null : obstruction;
+        [model.start, stopped, ...wanted, ...(shown.snapshots ? rows : []).map((row) => pose_at(data, row))]
+            .filter((pose) => pose)
+            .flatMap((pose) => boxes_at({pitch_rad: 0, ...pose}))
+            .forEach((box) => placement.reserve(box));
         marks.push(...draw_place_names(view, model, placement));
         if (shown.snapshots) {
             marks.push(...draw_snapshot_times(view, model, rows, placement));
@@ -156,10 +153,8 @@ export function make_scene(model, clock, playback) {
         move_words();
     });
     const move_words = () => {
-        if (forces) {
-            forces.draw();
-            give_way(words, shown.forces ? forces.words : []);
-        }
+        forces?.draw();
+        give_way(words, shown.forces && forces ? forces.words : [], data ? boxes_at(pose_at(data, clock.row)) : []);
     };
     clock?.follow((row) => {
         flown.move(pose_at(data, row));
@@ -169,19 +164,24 @@ export function make_scene(model, clock, playback) {
         }
     });
 
-    const button = (text, label, act) =>
-        h("button", {type: "button", class: "small", title: label, "aria-label": label, onclick: act}, text);
+    const button = (text, label, act, where = "") => h(
+        "button", {type: "button", class: `small ${where}`, title: label, "aria-label": label, onclick: act}, text);
     const everything = padded(scene.bounds);
     const tools =
         h("div", {class: "zoom-tools screen-only", role: "group", "aria-label": "Zoom"},
-          button("+", "Zoom in", () => view.zoom_by(1.4)), button("−", "Zoom out", () => view.zoom_by(1 / 1.4)),
-          data ? button("Flight", "Fit the flight", () => view.show(view.opening)) : null,
-          button(data ? "All" : "Fit", "Fit the bounds", () => view.show(everything)));
-    const frame = h("div", {class: "scene-frame"}, view.svg, make_pointer_text(view, model.map));
+          button("+", "Zoom in", () => (space?.shown ?? view).zoom_by(1.4)),
+          button("−", "Zoom out", () => (space?.shown ?? view).zoom_by(1 / 1.4)),
+          button(
+              data ? "Flight" : "Fit", data ? "Fit the flight" : "Fit the bounds",
+              () => space?.shown ? space.shown.home() : view.show(view.opening)),
+          data ? button("All", "Fit the bounds", () => view.show(everything), "of-side") : null);
+    const frame = h("div", {class: "scene-frame"}, view.svg, make_pointer_text(view, model.map), space?.stage);
+    playback?.plays_on_tap(frame);
     const element =
         h("figure", {class: "scene"}, frame, playback?.element,
-          h("fieldset", {class: "layers screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"),
+          h("fieldset", {class: "layers of-side screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"),
             switches),
+          space?.options, space?.note,
           h("figcaption", null, model.map ? make_color_bar(model.map) : null, make_legend(model, forces)));
     keep_sized(frame, 690, (width) => view.resize(width));
     return {element, tools, view, shown, flown};
@@ -193,7 +193,7 @@ function make_legend(model, forces) {
     const beside = model.scene.obstacles.some((obstacle) => !is_cut(obstacle));
     const cut = model.scene.obstacles.some(is_cut);
     return h(
-        "div", {class: "legend"},
+        "div", {class: "legend of-side"},
         model.data ?
             [
                 model.hovers.some(({goal}) => goal !== null) ?

@@ -86,15 +86,20 @@ function draw_direction({x_m, z_m, direction_rad}) {
     return s("path", {class: "goal-direction", d: `M${x_m - 0.7 * x} ${z_m - 0.7 * z}L${x_m} ${z_m}`});
 }
 
+/** How a goal wants the vehicle, without `arm_rad` where any will do; null for a goal of the end effector. */
+export const wanted_pose = (goal, {x_m, z_m}) =>
+    goal.kind === "state" ? {x_m, z_m, pitch_rad: 0, arm_rad: goal.arm_rad} : null;
+
 export function draw_goals(model) {
     const {goals, robot, rotor_groups} = model;
     return s("g", {class: "goals"}, goals.map((goal) => {
         const region = goal_region(goal, model.scene.bounds);
         const parts = [draw_region(region)];
-        if (goal.kind === "state") {
+        const pose = wanted_pose(goal, region);
+        if (pose) {
             parts.push(vehicle_at(
-                robot, rotor_groups, Number.isFinite(goal.arm_rad) ? "wanted" : "wanted armless",
-                {x_m: region.x_m, z_m: region.z_m, pitch_rad: 0, arm_rad: goal.arm_rad ?? 0}));
+                robot, rotor_groups, Number.isFinite(pose.arm_rad) ? "wanted" : "wanted armless",
+                {...pose, arm_rad: pose.arm_rad ?? 0}));
         } else if (Number.isFinite(goal.direction_rad)) {
             parts.push(draw_direction(goal));
         }

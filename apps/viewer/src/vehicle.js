@@ -1,6 +1,7 @@
 // Vehicle and arm as a drawing in metres.
 
 import {s} from "./dom.js";
+import {to_plane} from "./model.js";
 
 /** The body frame (a forward, c up) turned and moved: pitch is positive nose down. */
 function frame_transform({x_m, z_m, pitch_rad}) {
@@ -45,4 +46,31 @@ export function vehicle_at(robot, rotor_groups, style, pose) {
     const vehicle = make_vehicle(robot, rotor_groups, style);
     vehicle.move(pose);
     return vehicle.element;
+}
+
+/**
+ * What a vehicle covers, as boxes [left, top, right, bottom] in pixels: bodies, rotors, and the arm, if its angle is known, as
+ * a row of small ones.
+ * @param {import("./view.js").View} view
+ */
+export function vehicle_boxes(view, {arm, bodies, rotors}, rotor_groups, pose) {
+    const room = 2;
+    const box_around = (points) => {
+        const pixels = points.map((point) => view.to_pixels(...to_plane(pose, point)));
+        const x = pixels.map(([x]) => x), y = pixels.map(([, y]) => y);
+        return [Math.min(...x) - room, Math.min(...y) - room, Math.max(...x) + room, Math.max(...y) + room];
+    };
+    const count = Number.isFinite(pose.arm_rad) ? Math.min(40, Math.ceil((arm.length_m * view.pixels_per_m) / 8)) : 0;
+    const along = (i) => {
+        const length_m = (arm.length_m * i) / count;
+        return [
+            arm.joint_m[0] + length_m * Math.cos(pose.arm_rad), arm.joint_m[1] - length_m * Math.sin(pose.arm_rad)
+        ];
+    };
+    return [
+        ...bodies.map(({outline}) => box_around(outline)),
+        ...rotor_groups.map(
+            ({x_m, z_m}) => box_around([[x_m - rotors.radius_m, z_m], [x_m + rotors.radius_m, z_m - 0.06]])),
+        ...Array.from({length: count}, (_, i) => box_around([along(i), along(i + 1)]))
+    ];
 }

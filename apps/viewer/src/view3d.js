@@ -1,4 +1,4 @@
-// The 3-D view is packed in the page and starts when somebody asks for it.
+// The view in space is packed in the page and starts when somebody asks for it.
 
 import {decode_triangles, inflate, Trouble} from "./decode.js";
 import {h} from "./dom.js";
@@ -16,10 +16,10 @@ async function unpack_solids(model) {
 async function load_app() {
     if (!window.DownwashView3d) {
         const packed = document.getElementById("downwash-view3d")?.textContent ?? "";
-        const code = new TextDecoder().decode(await inflate(packed, "The 3-D view", "gzip"));
+        const code = new TextDecoder().decode(await inflate(packed, "The view in space", "gzip"));
         document.body.append(h("script", null, code));
         if (!window.DownwashView3d) {
-            throw new Trouble("The 3-D view did not start.");
+            throw new Trouble("The view in space did not start.");
         }
     }
     return window.DownwashView3d;
@@ -30,39 +30,63 @@ function has_webgl() {
     return Boolean(canvas.getContext("webgl2") || canvas.getContext("webgl"));
 }
 
+/**
+ * The choice between the view from the side and the view in space, which stand in the same place and share playback and
+ * zoom buttons. What belongs to one of them only has the class `of-side` or `of-space`.
+ * @returns {{choice: HTMLElement, stage: HTMLElement, options: HTMLElement, note: HTMLElement, shown: any}} `shown` has
+ *     `zoom_by` and `home` while the view in space is shown, else it is null
+ */
 export function make_view3d(model, clock, theme) {
-    const stage = h("div", {class: "stage"});
-    const status = h("p", {class: "muted", role: "status"});
-    const button = h("button", {type: "button", class: "open-3d"}, "Open the 3-D view");
-    button.addEventListener("click", async () => {
-        button.disabled = true;
-        status.textContent = "Unpacking…";
-        try {
-            if (!has_webgl()) {
-                throw new Trouble(
-                    "This browser offers no WebGL here, which the 3-D view draws with. " +
-                    "The scene above shows the same flight.");
-            }
-            await unpack_solids(model);
-            const app = (await load_app()).start(stage, model, clock);
-            app.set_theme(document.documentElement.dataset.theme);
-            theme.follow(app.set_theme);
-            stage.view = app;  // for tests
+    const stage = h("div", {class: "stage screen-only"});
+    const note = h("p", {class: "space-note muted screen-only", role: "status"});
+    const options = h("div", {class: "layers of-space screen-only"});
+    let app = null, is_in_space = false;
+
+    const show = (in_space) => {
+        is_in_space = in_space;
+        stage.closest(".scene-side").classList.toggle("in-space", in_space);
+        side.setAttribute("aria-pressed", String(!in_space));
+        space.setAttribute("aria-pressed", String(in_space));
+        note.textContent = in_space ? app.note : "";
+        // Keys act on what is shown, and space plays.
+        stage.parentElement.querySelector(in_space ? "canvas" : "svg").focus({preventScroll: true});
+    };
+    const start = async () => {
+        if (!has_webgl()) {
+            throw new Trouble(
+                "This browser offers no WebGL here, which the view in space draws with. The view from the side shows " +
+                "the same flight.");
+        }
+        await unpack_solids(model);
+        app = (await load_app()).start(stage, model, clock);
+        app.set_theme(document.documentElement.dataset.theme);
+        theme.follow(app.set_theme);
+        stage.view = app;  // for tests
+        if (clock) {
             const follow = h("input", {type: "checkbox", onchange: ({target}) => app.follow(target.checked)});
-            button.replaceWith(h(
-                "div", {class: "view3d-bar"}, clock ? h("label", {class: "layer"}, follow, "Follow the vehicle") : null));
-            status.textContent = `${app.note} Drag to turn, wheel or pinch to come nearer, right button or two fingers to move. ` +
-                `With the view in focus: W A S D turn, + and − come nearer, 0 goes back.`;
+            options.append(h("label", {class: "layer"}, follow, "Follow the vehicle"));
+        }
+    };
+    const open = async () => {
+        space.disabled = true;
+        try {
+            if (!app) {
+                note.textContent = "Unpacking…";
+                await start();
+            }
+            show(true);
             stage.dataset.state = "open";
-            stage.querySelector("canvas").focus({preventScroll: true});
         } catch (error) {
-            button.disabled = false;
-            status.textContent =
-                error instanceof Trouble ? error.message : `The 3-D view cannot be shown: ${error.message}.`;
+            note.textContent =
+                error instanceof Trouble ? error.message : `The view in space cannot be shown: ${error.message}.`;
             stage.dataset.state = "failed";
         }
-    });
-    return h(
-        "section", {class: "view3d screen-only", "aria-labelledby": "view3d-title"},
-        h("h2", {id: "view3d-title"}, "In three dimensions"), button, stage, status);
+        space.disabled = false;
+    };
+    const button = (text, is_pressed, act) =>
+        h("button", {type: "button", class: "small", "aria-pressed": String(is_pressed), onclick: act}, text);
+    const side = button("From the side", true, () => show(false)), space = button("In space", false, open);
+    space.classList.add("open-3d");
+    const choice = h("div", {class: "view-choice screen-only", role: "group", "aria-label": "View"}, side, space);
+    return {choice, stage, options, note, get shown() { return is_in_space ? app : null; }};
 }

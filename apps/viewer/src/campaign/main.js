@@ -28,11 +28,17 @@ function make_legend({planners, shown}) {
 }
 
 function assemble(page, model, theme) {
+    // What a plan does in worlds that no search has seen matters most.
+    const figures = [
+        make_worlds(model), make_outcomes(model), make_flown_costs(model), make_cost_shares(model), make_success(model),
+        make_costs(model), make_first_solutions(model), make_pairs(model)
+    ];
     page.replaceChildren(
-        h("a", {class: "skip screen-only", href: "#outcomes"}, "To the figures"), make_head(model, theme.element),
-        h("main", null, make_verdict(model), make_margins(model), make_legend(model), make_outcomes(model),
-          make_worlds(model), make_flown_costs(model), make_cost_shares(model), make_success(model), make_costs(model),
-          make_first_solutions(model), make_pairs(model), make_tables(model), make_settings(model)),
+        h("a", {class: "skip screen-only", href: `#${model.has_worlds ? "worlds" : "outcomes"}`}, "To the figures"),
+        make_head(model, theme.element),
+        h("main", null, make_verdict(model), make_margins(model), make_legend(model),
+          h("div", {class: `campaign-figures of-${Math.min(3, model.experiments.length)}`}, figures), make_tables(model),
+          make_settings(model)),
         make_foot(model.figures.settings.version, [d3_licence]));
     document.title = `${model.figures.settings.campaign ?? "Campaign"} · Downwash`;
 }

@@ -78,6 +78,8 @@ export function build_model(figures) {
         is_sweep: figures.margins.length > 0,
         /** "dots: seeds" of a small campaign; a large one shows some of its seeds only. */
         dots: figures.seed_step > 1 ? `dots: every ${figures.seed_step}th seed` : "dots: seeds",
+        /** Whether plans were flown in other worlds than the nominal one. */
+        has_worlds: figures.cells.some(({in_worlds}) => in_worlds && in_worlds.flown > 0),
         is_unfinished: figures.runs_done < figures.runs_planned,
         time_limit_s: figures.time_limit_s,
     };

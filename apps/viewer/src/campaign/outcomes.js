@@ -1,4 +1,4 @@
-// What became of the plans: flights that held, flights that failed, searches without a plan; and flights in worlds.
+// What became of the plans: flights in worlds; flights that held, flights that failed, searches without a plan.
 
 import {h, s} from "../dom.js";
 import {number} from "../format.js";
@@ -71,10 +71,11 @@ export function make_outcomes(model) {
         };
     }));
     return make_figure(
-        "outcomes", "Flights that held",
+        "outcomes", model.has_worlds ? "Flights in the nominal world" : "Flights that held",
         "Of all attempted seeds: those whose plan, executed with direct aerodynamics, reached the goal and hovered there. " +
             "The line is the 95 % Wilson interval of that share. “Flight failed” means that the search found a plan that " +
-            "obeys what its variant knows, and that this plan failed when executed.",
+            "obeys what its variant knows, and that this plan failed when executed." +
+            (model.has_worlds ? " A flight that holds here may fail in other worlds: see above." : ""),
         [
             h("p", {class: "panels-title key-line"}, key("held", "flight held, in the planner's colour"),
               key("failed", "a plan was found, but its flight failed"), key("without", "no plan was found")),
@@ -82,9 +83,14 @@ export function make_outcomes(model) {
         ]);
 }
 
-function worlds_row({planner, in_worlds: {failed, flown}}, y, frame) {
+const certified_text = ({hits, attempts}) => `certified ${number(hits, ",d")} of ${number(attempts, ",d")} seeds`;
+
+function worlds_row({planner, in_worlds: {failed, flown, tested, certified}}, y, frame) {
     const at = frame.x(failed.hits / failed.attempts).toFixed(1);
-    const text = `${planner.name}: ${percent_text(failed)}, ${number(flown, ",d")} ${flown === 1 ? "plan" : "plans"}`;
+    const plans = `${number(flown, ",d")} ${flown === 1 ? "plan" : "plans"}`;
+    const text = [
+        `${planner.name}: ${percent_text(failed)}`, `${plans} flown`, ...(tested > 0 ? [certified_text(certified)] : [])
+    ].join(", ");
     return [
         interval(failed, y, frame), s("circle", {class: `dot ${planner.style}`, cx: at, cy: y, r: 4.5}),
         row_name(frame, y - 12, text)
@@ -95,7 +101,7 @@ function worlds_row({planner, in_worlds: {failed, flown}}, y, frame) {
 export function make_worlds(model) {
     const flown_in = (experiment) =>
         shown_cells(model, experiment).filter(({in_worlds}) => in_worlds && in_worlds.flown > 0);
-    if (!model.figures.cells.some(({in_worlds}) => in_worlds && in_worlds.flown > 0)) {
+    if (!model.has_worlds) {
         return null;
     }
     const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, () => {
@@ -105,15 +111,22 @@ export function make_worlds(model) {
         }
         const told = cells.map(
             ({planner, in_worlds: {failed}}) => `${planner.name}: ${failed.hits} of ${failed.attempts} flights failed`);
+        const without = shown_cells(model, experiment).filter((cell) => !cells.includes(cell));
+        told.push(...without.map(({planner}) => `${planner.name}: no plan to fly`));
         const most = Math.max(...cells.map(({in_worlds}) => in_worlds.failed.high));
         return {
             label: `Flights in worlds. ${told.join("; ")}.`,
-            height: 42 + row_height * cells.length,
+            height: 42 + row_height * (cells.length + without.length),
             left: 12,
             right: 16,
             x: {name: "share of flights that failed", domain: [0, around(0, most)[1]], text: (v) => number(v, ".2~%")},
             y: null,
-            draw: (frame) => cells.map((cell, index) => worlds_row(cell, row_at(frame, index, row_height), frame)),
+            draw: (frame) => [
+                ...cells.map((cell, index) => worlds_row(cell, row_at(frame, index, row_height), frame)),
+                ...without.map(
+                    ({planner}, index) => row_name(
+                        frame, row_at(frame, cells.length + index, row_height) - 12, `${planner.name}: no plan to fly`))
+            ],
         };
     }));
     return make_figure(

@@ -164,6 +164,7 @@ function failures_list({figures}) {
 export function make_tables(model) {
     const {figures} = model;
     const count = figures.failures.reduce((sum, failure) => sum + failure.count, 0);
+    const worlds = worlds_table(model), parameters = parameters_table(model);
     return h(
         "section", {class: "tables", id: "tables", "aria-labelledby": "tables-title"},
         h("h2", {id: "tables-title"}, "Tables"),
@@ -174,10 +175,9 @@ export function make_tables(model) {
               "unstable or missed the goal. Discarded are plans that failed so, came nearer than the margin " +
               "or got no certificate, and were not reported. Verified is the time to the first plan that has passed these " +
               "checks."),
+        worlds === null ? null : [h("h3", null, "In other worlds"), worlds, h("h3", null, "In the nominal world")],
         flights_table(model), figures.bars.length > 0 ? folded(`Targets (${figures.bars.length})`, bars_table(model)) : null,
-        ...[["In other worlds", worlds_table(model)], ["Parameters that decide alone", parameters_table(model)]]
-            .filter(([, content]) => content !== null)
-            .map(([title, content]) => folded(title, content)),
+        parameters === null ? null : folded("Parameters that decide alone", parameters),
         folded("Time to the first solution", times_table(model)), folded("Costs", costs_table(model)),
         figures.comparisons.length > 0 ? folded("Paired comparisons", pairs_table(model)) : null,
         figures.margins.length > 0 ? folded("Margins", margins_tables(model).flat()) : null,

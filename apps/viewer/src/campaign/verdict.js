@@ -10,7 +10,7 @@ export function verdict_of(model) {
     const {bars, failures, runs_done, runs_planned} = model.figures;
     const without = failures.reduce((sum, {count}) => sum + count, 0);
     const held = `${counted(runs_done, "run", "runs")}: ${number(runs_done - without, ",d")} ended with a flight that ` +
-        `held, ${number(without, ",d")} did not.`;
+        `held${model.has_worlds ? " in the nominal world" : ""}, ${number(without, ",d")} did not.`;
     const missed = bars.filter((bar) => !bar.kept);
     if (model.is_unfinished) {
         return {
@@ -63,25 +63,48 @@ export function make_head(model, theme_switch) {
             null);
 }
 
+const percent = (share) => number(100 * share, ".1f");
+const of = (hits, attempts) => `${number(hits, ",d")} of ${number(attempts, ",d")}`;
+
+/**
+ * What a planner's tile says: one figure and lines below it. What matters most comes first: flights in other worlds,
+ * then certificates, then flights in the nominal world.
+ */
+function tile_of({held, failed_flights, in_worlds}) {
+    const {failed, flown, certified, tested} = in_worlds ?? {flown: 0, tested: 0};
+    if (flown === 0) {
+        return [
+            ...(tested > 0 ? [of(certified.hits, certified.attempts), "certified plans"] : []),
+            ...(tested > 0 ? [`flights that held: ${of(held.hits, held.attempts)}`] :
+                             [of(held.hits, held.attempts), "flights that held"]),
+            failed_flights.attempts > 0 ? `failed flights: ${number(failed_flights.hits, ",d")}, 95 % interval ${
+                                              percent(failed_flights.low)} to ${percent(failed_flights.high)} %` :
+                                          "not run yet"
+        ];
+    }
+    return [
+        of(failed.attempts - failed.hits, failed.attempts),
+        `flights in other worlds held, of ${counted(flown, "plan", "plans")}`,
+        `failed: ${percent(failed.hits / failed.attempts)} %, 95 % interval ${percent(failed.low)} to ${
+            percent(failed.high)} %`,
+        ...(tested > 0 ? [`certified plans: ${of(certified.hits, certified.attempts)} seeds`] : []),
+        `held in the nominal world: ${of(held.hits, held.attempts)} seeds`
+    ];
+}
+
 export function make_verdict(model) {
     const {kind, mark, title, lines} = verdict_of(model);
-    const percent = (share) => number(100 * share, ".1f");
+    const tile = ({name, totals}) => {
+        const [figure, ...others] = tile_of(totals);
+        return h(
+            "div", null, h("dt", null, foreign(name)),
+            h("dd", null, h("span", {class: "figure"}, figure),
+              others.map((line) => h("span", {class: "muted"}, line))));
+    };
     return h(
         "section", {class: `verdict ${kind}`, "aria-labelledby": "verdict-title"},
         h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
           h("div", null, h("h2", {id: "verdict-title"}, title),
             lines.map((text) => h("p", null, foreign(text))))),
-        h("dl", {class: "figures of-planners"},
-          model.planners.map(
-              ({name, totals}) => h(
-                  "div", null, h("dt", null, foreign(name)),
-                  h("dd", null,
-                    h("span", {class: "figure"},
-                      `${number(totals.held.hits, ",d")} of ${number(totals.held.attempts, ",d")}`),
-                    h("span", {class: "muted"}, "flights that held"),
-                    h("span", {class: "muted"},
-                      totals.failed_flights.attempts > 0 ?
-                          `failed flights: ${number(totals.failed_flights.hits, ",d")}, 95 % interval ${
-                              percent(totals.failed_flights.low)} to ${percent(totals.failed_flights.high)} %` :
-                          "not run yet"))))));
+        h("dl", {class: "figures of-planners"}, model.planners.map(tile)));
 }

@@ -1,8 +1,7 @@
-// The 3-D view: a bundle of its own with three.js. x right, y away from the viewer, z up, as in the data.
+// The view in space: a bundle of its own with three.js. x right, y away from the viewer, z up, as in the data.
 
 import * as three from "three";
 
-import {h} from "../dom.js";
 import {opening_of} from "../extents.js";
 import {number} from "../format.js";
 import {pose_at} from "../model.js";
@@ -150,7 +149,7 @@ export function start(stage, model, clock) {
     const {radius_m, positions_m} = robot.rotors;
     const width_m = 2 * (radius_m + Math.max(...positions_m.map(([, y]) => Math.abs(y))));
     view = make_camera(canvas, extent, width_m, scene.obstacles, render);
-    names = make_names(names_of(model, grid, extent));
+    names = make_names(names_of(model, grid, extent), vehicle.covered);
     stage.replaceChildren(canvas, names.element);
 
     let is_framed = false;
@@ -187,6 +186,8 @@ export function start(stage, model, clock) {
     });
     return {
         follow,
+        home: view.home,
+        zoom_by: view.zoom_by,
         note: `The grid lies in the plane of motion; its squares are ${number(grid.step_m, "~r")}\u00a0m wide. ` +
             "Obstacles that the plane cuts are darker than those beside it.",
         set_theme(theme) {

@@ -1,4 +1,4 @@
-// What the camera of the 3-D view sees, and how keys move it.
+// What the camera of the view in space sees, and how keys move it.
 
 import {OrbitControls} from "orbit-controls";
 import * as three from "three";
@@ -60,6 +60,12 @@ export function make_camera(canvas, extent, width_m, obstacles, render) {
         controls.update();
         render();
     };
+    const zoom_by = (factor) => {
+        const offset = camera.position.clone().sub(controls.target);
+        camera.position.copy(controls.target).addScaledVector(offset, 1 / factor);
+        controls.update();
+        render();
+    };
     // The controls know keys for moving only; turning by key goes round the target in steps.
     canvas.addEventListener("keydown", (pressed) => {
         const turns = {a: [-0.12, 0], d: [0.12, 0], w: [0, -0.1], s: [0, 0.1]};
@@ -77,7 +83,8 @@ export function make_camera(canvas, extent, width_m, obstacles, render) {
                 offset.applyAxisAngle(side, down);
             }
         } else if (key === "+" || key === "=" || key === "-") {
-            offset.multiplyScalar(key === "-" ? 1.15 : 1 / 1.15);
+            zoom_by(key === "-" ? 1 / 1.15 : 1.15);
+            return;
         } else if (key === "0") {
             home();
             return;
@@ -89,5 +96,5 @@ export function make_camera(canvas, extent, width_m, obstacles, render) {
         controls.update();
         render();
     });
-    return {camera, home, look_at, move_to};
+    return {camera, home, look_at, move_to, zoom_by};
 }

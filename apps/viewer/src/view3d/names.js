@@ -1,4 +1,5 @@
-// Names in space: words over the picture that keep their size, the more important ones first, none on another.
+// Names in space: words over the picture that keep their size, the more important ones first, none on another or on the
+// vehicle.
 
 import * as three from "three";
 
@@ -48,12 +49,26 @@ export function names_of(model, grid, extent) {
     return [...names, ...obstacles];
 }
 
-/** Keeps the words where their points are. @returns {{element: HTMLElement, draw: (camera, width, height) => void}} */
-export function make_names(names) {
+/**
+ * What points cover in a picture, as a box [left, top, right, bottom] in pixels.
+ * @param {three.Vector3[]} points
+ */
+function box_around(points, camera, width, height) {
+    const seen = points.map((point) => point.clone().project(camera));
+    const x = seen.map((at) => (0.5 + at.x / 2) * width), y = seen.map((at) => (0.5 - at.y / 2) * height);
+    return [Math.min(...x), Math.min(...y), Math.max(...x), Math.max(...y)];
+}
+
+/**
+ * Keeps the words where their points are, off what `covered()` gives: groups of points.
+ * @returns {{element: HTMLElement, draw: (camera, width, height) => void}}
+ */
+export function make_names(names, covered) {
     const words = names.map(({kind, text}) => h("span", {class: `name3d ${kind}`}, text));
     const element = h("div", {class: "names3d", "aria-hidden": "true"}, words);
     const draw = (camera, width, height) => {
         const placement = new Placement([0, 0, width, height]);
+        covered().forEach((points) => placement.reserve(box_around(points, camera, width, height)));
         names.forEach(({kind, text, at}, i) => {
             const seen = at.clone().project(camera);
             const x = (0.5 + seen.x / 2) * width, y = (0.5 - seen.y / 2) * height;

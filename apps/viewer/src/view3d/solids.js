@@ -172,12 +172,24 @@ export function draw_vehicle(robot, paint) {
     body.traverse((part) => {
         part.renderOrder = 1;
     });
+    const half_x = Math.max(...rotors.positions_m.map(([x]) => Math.abs(x))) + rotors.radius_m;
+    const half_y = Math.max(...rotors.positions_m.map(([, y]) => Math.abs(y))) + rotors.radius_m;
+    const up = Math.max(...rotors.positions_m.map(([, , z]) => z));
+    const pieces = 8;
     return {
         body,
         move({x_m, z_m, pitch_rad, arm_rad}) {
             body.position.set(x_m, 0, z_m);
             body.rotation.y = pitch_rad;
             link.rotation.y = arm_rad;
+        },
+        /** Groups of points: the corners of the rotors' plane, and pieces of the arm. */
+        covered() {
+            body.updateMatrixWorld(true);
+            const corners = [-half_x, half_x].flatMap(
+                (x) => [-half_y, half_y].map((y) => body.localToWorld(new three.Vector3(x, y, up))));
+            const at = (i) => link.localToWorld(new three.Vector3((i / pieces) * arm.length_m, 0, 0));
+            return [corners, ...Array.from({length: pieces}, (_, i) => [at(i), at(i + 1)])];
         },
     };
 }
