@@ -3,11 +3,21 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "downwash/report/figure_colors.hpp"
 
 namespace downwash {
+namespace {
+
+/// A name as it stands beside its point: the number alone, which needs little room.
+std::string short_name(const std::string& name) {
+    const std::string last = name.substr(name.rfind(' ') + 1);
+    return last.find_first_not_of("0123456789") == std::string::npos ? last : name;
+}
+
+}  // namespace
 
 double RobotDrawing::width_m() const {
     double low_m = 0, high_m = 0;
@@ -53,7 +63,7 @@ std::vector<FigurePoints> goal_points(const Problem& problem, const std::vector<
             }
             goals.points.push_back({drawing.x_m.value(), drawing.z_m.value()});
             if (names.size() > 1) {
-                goals.labels.push_back(name);
+                goals.labels.push_back(short_name(name));
             }
         }
     }
