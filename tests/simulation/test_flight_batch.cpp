@@ -158,7 +158,7 @@ TEST_CASE(
 }
 
 TEST_CASE("edges fly side by side as one by one where the controller sees many ticks late") {
-    for (const double delay_s : {0.036, 0.045, 0.1}) {
+    for (const double delay_s : {0.036, 0.04, 0.1}) {
         CAPTURE(delay_s);
         Problem problem = cluttered_problem();
         problem.robot.controller.delay_s = delay_s;
