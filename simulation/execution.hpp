@@ -81,10 +81,10 @@ struct Execution : FlightSums {
     double duration_s = 0;
     double clearance_integral = 0;  ///< see SegmentFlight
     double max_tracking_error_m = 0;
-    double max_saturation = 0;         ///< greatest demand over its limit; above 1 something was clipped
-    double goal_error_m = 0;           ///< the worst of all goals
-    double lateral_m = 0;              ///< how far the vehicle was to the left of its plane; see FlownWorld
-    std::vector<GoalVisit> goals;      ///< one for each, in their order
+    double max_saturation = 0;     ///< greatest demand over its limit; above 1 something was clipped
+    double goal_error_m = 0;       ///< the worst of all goals
+    double lateral_m = 0;          ///< how far the vehicle was to the left of its plane; see FlownWorld
+    std::vector<GoalVisit> goals;  ///< one for each, in their order
     /// Share of the control ticks at which a part of the robot is in space that no sensor saw and that counts as free
     /// (Scene::unseen_space()); empty if the scene has none.
     std::optional<double> unseen_share;
