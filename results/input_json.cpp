@@ -8,6 +8,7 @@
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/results/input_document.hpp"
 
 namespace downwash {
 namespace {
@@ -31,8 +32,6 @@ Json loop_json(double margin, LoopInput input, double arm_rad) {
 std::string separator_name(char separator) {
     return separator == '\t' ? "tab" : separator == ' ' ? "blank" : std::string(1, separator);
 }
-
-}  // namespace
 
 Json geometry_json(const GeometryInput& geometry) {
     const GeometryFacts& facts = geometry.facts;
@@ -88,6 +87,20 @@ Json data_json(const DataFacts& data) {
             {"decimal_sign", std::string(1, data.csv.decimal_sign)},
             {"columns", std::move(columns)},
             {"other_columns", data.csv.others}};
+}
+
+}  // namespace
+
+std::string geometry_document(const GeometryInput& geometry) {
+    return geometry_json(geometry).dump();
+}
+
+std::string robot_document(const RobotInput& robot) {
+    return robot_json(robot).dump();
+}
+
+std::string data_document(const DataFacts& data) {
+    return data_json(data).dump();
 }
 
 Json inputs_json(const InputFacts& inputs) {

@@ -24,7 +24,7 @@
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/report/problem_figure.hpp"
 #include "downwash/report/problem_page.hpp"
-#include "downwash/results/input_json.hpp"
+#include "downwash/results/input_document.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -133,26 +133,26 @@ struct ReadLists {
 /// Adds what a file became to the lists. @return the same as lines for people
 std::string add_inputs(const std::string& path, const Findings& found, ReadLists& lists) {
     std::string text;
-    const auto add = [&text](Json& list, Json origin, const Json& facts, const std::string& line) {
-        origin.update(facts);
+    const auto add = [&text](Json& list, Json origin, const std::string& facts, const std::string& line) {
+        origin.update(Json::parse(facts));
         list.push_back(std::move(origin));
         text += "  " + line + "\n";
     };
     if (found.robot) {
         const RobotInput robot{found.robot->name, robot_facts(*found.robot)};
-        add(lists.robots, {{"problem", nullptr}, {"file", path}}, robot_json(robot), text_of(robot));
+        add(lists.robots, {{"problem", nullptr}, {"file", path}}, robot_document(robot), text_of(robot));
     }
     if (found.data) {
-        add(lists.data, {{"problem", nullptr}}, data_json(*found.data), text_of(*found.data));
+        add(lists.data, {{"problem", nullptr}}, data_document(*found.data), text_of(*found.data));
     }
     if (found.problem) {
         const InputFacts inputs = input_facts(found.problem->problem, found.problem->model->scene());
-        add(lists.robots, {{"problem", path}, {"file", nullptr}}, robot_json(inputs.robot), text_of(inputs.robot));
+        add(lists.robots, {{"problem", path}, {"file", nullptr}}, robot_document(inputs.robot), text_of(inputs.robot));
         for (const GeometryInput& each : inputs.geometry) {
-            add(lists.geometry, {{"problem", path}}, geometry_json(each), text_of(each));
+            add(lists.geometry, {{"problem", path}}, geometry_document(each), text_of(each));
         }
         for (const DataFacts& each : inputs.data) {
-            add(lists.data, {{"problem", path}}, data_json(each), text_of(each));
+            add(lists.data, {{"problem", path}}, data_document(each), text_of(each));
         }
     }
     return text;
