@@ -355,7 +355,8 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
             text += table_row("", "At no pitch and no arm angle does the vehicle get past within the bounds.");
             text += table_row("", "Move the plane of motion, widen the bounds, or change the scene.");
         } else {
-            const std::string by = o.obstacles.empty() ? "" : " (nearest: " + quoted_labels(o.obstacles) + ")";
+            const std::string link = o.cause == "collision" ? " with " : " near ";
+            const std::string by = o.obstacles.empty() ? "" : link + quoted_labels(o.obstacles);
             text += table_row("stopped by",
                               fmt::format("{}{} at x {:.2f} m, z {:.2f} m, arm {:.0f} deg, {:.2f} m from {}", o.cause,
                                           by, o.at[plane::x], o.at[plane::z], o.at[plane::arm] * degrees_per_radian,
