@@ -11,7 +11,7 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 judge_may='controllers/actuation controllers/aided_law controllers/aids controllers/axes controllers/cascaded_pid
 controllers/configuration controllers/control_law controllers/model_inversion controllers/plan controllers/planar_lyapunov
 controllers/reference_point controllers/reference_segment controllers/rest dynamics/plant dynamics/plant_model dynamics/slipstreams
-dynamics/plant_state simulation/contact_goal simulation/flight_model simulation/flight_sums simulation/goal simulation/noise
+dynamics/plant_state simulation/contact_goal simulation/flight_memory simulation/flight_model simulation/flight_sums simulation/goal simulation/noise
 simulation/pose simulation/robot simulation/robot_uncertainty simulation/tick_model simulation/uncertainty
 simulation/vehicle_state simulation/world simulation/world_numbers simulation/world_parameters'
 
