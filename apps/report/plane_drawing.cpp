@@ -9,15 +9,11 @@
 #include "downwash/report/figure_colors.hpp"
 
 namespace downwash {
-namespace {
 
-/// A name as it stands beside its point: the number alone, which needs little room.
 std::string short_name(const std::string& name) {
     const std::string last = name.substr(name.rfind(' ') + 1);
     return last.find_first_not_of("0123456789") == std::string::npos ? last : name;
 }
-
-}  // namespace
 
 double RobotDrawing::width_m() const {
     double low_m = 0, high_m = 0;

@@ -26,6 +26,9 @@ class RobotDrawing {
     std::vector<Ring> bodies_;
 };
 
+/// The name of a goal as it stands beside its point: the number alone, which needs little room.
+[[nodiscard]] std::string short_name(const std::string& name);
+
 /// The goals that are a point of the plane; several in turn with their numbers.
 /// @param names of goals_of(problem)
 [[nodiscard]] std::vector<FigurePoints> goal_points(const Problem& problem, const std::vector<std::string>& names);

@@ -58,7 +58,7 @@ VehicleGoals vehicle_goals(const Problem& problem, const std::vector<std::string
             }
             found.points.points.push_back({*drawing.x_m, *drawing.z_m});
             if (names.size() > 1) {
-                found.points.labels.push_back(name);
+                found.points.labels.push_back(short_name(name));
             }
             if (const auto arm_rad = level_arm_rad(goal)) {
                 robot.add_to(found.lines.pieces, *drawing.x_m, *drawing.z_m, 0, *arm_rad);

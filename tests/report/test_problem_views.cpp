@@ -76,8 +76,8 @@ TEST_CASE("goals of the vehicle are the robot there, or a line where a coordinat
     problem.goals_before = {test::configuration_goal(-1, 3)};
     problem.goal = test::tip_goal(3, 4.8);
     figure = problem_figure(problem, *model);
-    CHECK(figure.points.at(0).labels == std::vector<std::string>{"goal 2"});
-    CHECK(figure.points.at(1).labels == std::vector<std::string>{"goal 1"});
+    CHECK(figure.points.at(0).labels == std::vector<std::string>{"2"});
+    CHECK(figure.points.at(1).labels == std::vector<std::string>{"1"});
 }
 
 TEST_CASE("the page of a problem has its scene, its warnings and what was read, and no flight") {
