@@ -94,11 +94,11 @@ class Looks(page_test.BrowserTest):
                         words = self.js(
                             "return [...document.querySelectorAll('.words .word')]"
                             f".filter(e => getComputedStyle(e).visibility !== 'hidden').map(e => {box}){boxes}")
-                        self.assertGreater(len(words), 4)
+                        self.assertGreater(len(words), 2)
                         parts = self.js(
                             "return [...document.querySelectorAll('.vehicle.flown :is(.body, .disc)')]"
                             f".map(e => {box}){boxes}")
-                        self.assertGreater(len(parts), 8)
+                        self.assertGreaterEqual(len(parts), 4)
                         # The arm is a line: points along it, not the box around it.
                         points = self.js(
                             "return [...document.querySelectorAll('.vehicle.flown .arm')].flatMap(e => {"
@@ -275,7 +275,7 @@ class InThreeDimensions(page_test.BrowserTest):
             with self.subTest(width=width):
                 self.browser.resize(width, height, mobile=width < 700)
                 self.open("solids")
-                frame = "(b => [b.left, b.top, b.right, b.bottom])(e.getBoundingClientRect())"
+                frame = "(b => [b.left, b.top, b.right, b.bottom].map(Math.round))(e.getBoundingClientRect())"
                 before = self.one(".scene-svg", frame)
                 self.open_3d()
                 self.browser.settle()
@@ -300,11 +300,14 @@ class InThreeDimensions(page_test.BrowserTest):
     def test_its_buttons_come_nearer_and_go_back(self):
         self.open("solids")
         self.open_3d()
+        self.browser.settle()
         across = "const v = document.querySelector('.stage').view; return v.seen_at(1, 9)[0] - v.seen_at(0, 9)[0]"
         before = self.js(across)
         self.js("document.querySelector('.zoom-tools button').click()")
+        self.browser.settle()
         self.assertGreater(self.js(across), 1.2 * before)
         self.js("[...document.querySelectorAll('.zoom-tools button')].find(b => b.textContent === 'Flight').click()")
+        self.browser.settle()
         self.assertAlmostEqual(self.js(across), before, places=6)
 
     def test_prints_the_view_from_the_side(self):
