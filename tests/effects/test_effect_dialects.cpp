@@ -108,7 +108,7 @@ TEST_CASE("Every dialect, encoding and end of line gives the numbers of measurem
                 rows.back().push_back(spelled(number, random));
             }
         }
-        const auto found = parse_wall_measurements(test::csv_file(rows, dialect, random), "w.csv");
+        const auto found = parse_wall_measurements(test::csv_file(rows, dialect, random), "w.csv").points;
         REQUIRE(found.size() == 3);
         for (std::size_t i = 0; i < 3; ++i) {
             REQUIRE(found[i].distance_over_r == numbers[i][0] / 1000.);

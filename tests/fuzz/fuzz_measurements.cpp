@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace downwash;
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);
     try {
-        for (const WallMeasurement& point : parse_wall_measurements(bytes, "walls.csv")) {
+        for (const WallMeasurement& point : parse_wall_measurements(bytes, "walls.csv").points) {
             if (!(point.distance_over_r >= 1 && std::abs(point.force_over_thrust) <= 10)) {
                 std::abort();
             }

@@ -478,10 +478,10 @@ TEST_CASE("a plan that is cheaper in the planner's model only, and not when flow
     std::size_t compared = 0;
     for (problem.planner.seed = 1; problem.planner.seed <= 3; ++problem.planner.seed) {
         CAPTURE(problem.planner.seed);
-        const auto [found, record, attempts, weak] =
-            solve_deceived(problem, {test::box("ground", {30, 20, 1}, {0, 0, 1.1})});
+        const planning::SearchResult result = solve_deceived(problem, {test::box("ground", {30, 20, 1}, {0, 0, 1.1})});
+        const Found& found = result.found;
         REQUIRE(found.status == Status::solved);
-        const auto& improvements = record.improvements;
+        const auto& improvements = result.record.improvements;
         for (std::size_t i = 1; i < improvements.size(); ++i, ++compared) {
             CHECK(improvements[i].flown_cost < improvements[i - 1].flown_cost);
         }
