@@ -92,7 +92,8 @@ bool do_meet(const BoundingBox& a, const BoundingBox& b) {
 /// Where obstacles matter, in the plane's coordinates, and how large they usually are.
 struct Region {
     BoundingBox reach;
-    double bounds_m;  ///< longer side of the bounds
+    BoundingBox surroundings;  ///< wider across the plane, by the longer side of the bounds
+    double bounds_m;           ///< longer side of the bounds
 
     explicit Region(const ProblemCheck& check) {
         const Problem& problem = check.problem();
@@ -105,6 +106,9 @@ struct Region {
         reach = {{b.x_low_m - reach_m, -reach_m, b.z_low_m - reach_m},
                  {b.x_high_m + reach_m, reach_m, b.z_high_m + reach_m}};
         bounds_m = std::max(b.x_high_m - b.x_low_m, b.z_high_m - b.z_low_m);
+        surroundings = reach;
+        surroundings.low_m[1] -= bounds_m;
+        surroundings.high_m[1] += bounds_m;
     }
 
     [[nodiscard]] bool is_huge(const BoundingBox& box) const { return size_of(box) >= suspicious_ratio * bounds_m; }
@@ -170,7 +174,9 @@ std::optional<std::string> offset_for(const Obstacle& obstacle) {
 void add_place_warning(const Obstacle& obstacle, const std::string& key, const PlaneOfMotion& plane,
                        const Region& region, std::vector<KeyError>& warnings) {
     const BoundingBox box = BoxInPlane(obstacle, plane).box();
-    const bool is_outside = !do_meet(box, region.reach);
+    // What has its centre beside the plane is likely meant to be there.
+    const bool is_put_beside = plane.from_world(obstacle.center_world_m)[1] != 0;
+    const bool is_outside = !do_meet(box, is_put_beside ? region.surroundings : region.reach);
     std::string what;
     if (region.is_huge(box) || region.is_tiny(box)) {
         what =

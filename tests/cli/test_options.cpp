@@ -68,17 +68,18 @@ TEST_CASE("What several commands do has one name in all of them") {
         {"--out",
          {"solve", "execute", "validate", "aeromap build", "aeromap plot", "aeromap fit", "bench run", "bench slurm",
           "bench parallel", "bench report", "study uncertainty", "study awareness", "study partial-ground-effect",
-          "study disturbance-test-bench", "study ceiling-envelope", "study ceiling-contact", "report", "export"}},
+          "study disturbance-test-bench", "study ceiling-envelope", "study ceiling-contact", "report", "export",
+          "replan"}},
         {"--quiet",
          {"solve", "execute", "validate", "aeromap query", "aeromap build", "aeromap plot", "bench run",
           "study uncertainty", "study awareness", "study partial-ground-effect", "study disturbance-test-bench",
-          "study ceiling-envelope", "study ceiling-contact"}},
-        {"--threads", {"solve", "execute", "validate", "aeromap query", "aeromap build", "report"}},
-        {"--margin", {"solve", "execute"}},
+          "study ceiling-envelope", "study ceiling-contact", "replan"}},
+        {"--threads", {"solve", "execute", "validate", "aeromap query", "aeromap build", "report", "replan"}},
+        {"--margin", {"solve", "execute", "replan"}},
         {"--jobs", {"bench run", "bench slurm", "bench parallel", "study uncertainty", "study awareness"}},
-        {"--plan", {"execute", "validate"}},
+        {"--plan", {"execute", "validate", "replan"}},
         {"--arm-deg", {"aeromap plot", "aeromap hold"}},
-        {"--no-cache", {"solve", "aeromap query", "bench run", "study uncertainty", "study awareness"}}};
+        {"--no-cache", {"solve", "replan", "aeromap query", "bench run", "study uncertainty", "study awareness"}}};
     for (const auto& [name, commands] : expected) {
         INFO(name);
         REQUIRE(options.contains(name));

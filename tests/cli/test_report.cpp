@@ -192,10 +192,11 @@ TEST_CASE("Completions for fish offer commands, options and what options take") 
     const Workspace work;
     const std::string script = work.run("completion fish").out;
     const std::string in_solve = "complete -c downwash -n 'test (__downwash_command) = \"downwash solve\"' ";
-    CHECK_THAT(script, Contains("complete -c downwash -n 'test (__downwash_command) = \"downwash\"' -f -a 'solve' -d ") &&
-                           Contains(in_solve + "-l seed -r -d ") &&
-                           Contains(in_solve + "-l variant -x -a 'mp-arm mp-arm-da mp-arm-ada' -d ") &&
-                           Contains("\"downwash aeromap plot\"") && Contains(in_solve + "-l out -s o -r "));
+    CHECK_THAT(script,
+               Contains("complete -c downwash -n 'test (__downwash_command) = \"downwash\"' -f -a 'solve' -d ") &&
+                   Contains(in_solve + "-l seed -r -d ") &&
+                   Contains(in_solve + "-l variant -x -a 'mp-arm mp-arm-da mp-arm-ada' -d ") &&
+                   Contains("\"downwash aeromap plot\"") && Contains(in_solve + "-l out -s o -r "));
     if (std::system("command -v fish >/dev/null") != 0) {
         return;
     }

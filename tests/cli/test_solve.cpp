@@ -85,13 +85,13 @@ TEST_CASE("Solve writes a solution and a trajectory and the effective problem in
     CHECK(keys_of(solution) == std::set<std::string>{"schema", "status", "interrupted", "problem", "variant",
                                                      "algorithm", "objective", "seed", "version", "threads", "cost",
                                                      "planning", "certificate", "plan", "stops", "execution", "files",
-                                                     "warnings"});
+                                                     "warnings", "inputs"});
     CHECK(keys_of(solution.at("problem")) == std::set<std::string>{"name", "file", "sha256"});
     CHECK(keys_of(solution.at("planning")) ==
           std::set<std::string>{"wall_s", "map_wall_s", "flight_wall_s", "first_solution_wall_s",
                                 "first_certified_wall_s", "iterations", "edges_simulated", "simulated_s",
-                                "states_checked", "improvements", "rejected", "candidates", "nearest_approach_m",
-                                "obstruction", "goal"});
+                                "states_checked", "improvements", "rejected", "stopped_by", "candidates",
+                                "nearest_approach_m", "obstruction", "goal"});
     CHECK(keys_of(solution.at("plan").at("reference").at(0)) ==
           std::set<std::string>{"t_s", "x_m", "z_m", "arm_rad", "vx_m_s", "vz_m_s", "arm_rate_rad_s", "ax_m_s2",
                                 "az_m_s2", "arm_acceleration_rad_s2"});

@@ -470,7 +470,7 @@ TEST_CASE("Beside a wall along the plane the judge has the vehicle where the pla
         CHECK(touching.is_lateral_collision);
         compare(touching, *executed(problem, plan, true, world));
         // Nor does what is in its way count as beside it.
-        problem.obstacles = {box("post", {0.2, 10, 60}, {to[plane::x], 0, 0})};
+        problem.obstacles = {box("rail", {0.1, 10, 0.1}, {to[plane::x], 0, to[plane::z] - 0.8})};  // before the arm
         world.lateral_error_m = 0.01;
         const judge::JudgedFlight stopped = judge::PlanJudge(problem).fly(plan, {true, world});
         CHECK(stopped.outcome == judge::Outcome::collision);
