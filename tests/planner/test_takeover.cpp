@@ -72,7 +72,7 @@ TEST_CASE("targets that were visited are left out, and what was spent is no long
 
     problem.energy_budget_j = 300;
     CHECK_THAT(test::error_of([&] { static_cast<void>(remaining(from, problem)); }),
-               Catch::Contains("goal.energy_budget_j is spent before this moment: the plan has taken 300 J"));
+               Catch::Contains("goal.energy_budget_j: is spent before this moment: the plan has taken 300 J"));
     problem.energy_budget_j.reset();
     from.visited = problem.targets;
     CHECK_THAT(test::error_of([&] { static_cast<void>(remaining(from, problem)); }),
@@ -84,5 +84,5 @@ TEST_CASE("targets that were visited are left out, and what was spent is no long
     CHECK(std::get<ConfigurationGoal>(next.goal.kind).z_m == 3);
     problem.robot.controller.rate_hz = 250;
     CHECK_THAT(test::error_of([&] { static_cast<void>(remaining(from, problem)); }),
-               Catch::Contains("robot.controller.rate_hz is 250: expected 100"));
+               Catch::Contains("robot.controller.rate_hz: is 250: expected 100"));
 }

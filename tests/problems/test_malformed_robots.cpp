@@ -100,7 +100,7 @@ const Edit edits[] = {
      "21:3: unknown key 'wind' in uncertainty: it belongs in the problem file, as uncertainty.wind"},
     {"max_tilt_deg: 35", "max_tilt_deg: 35\nuncertainty: {vehicle: {weight: 0}, weather: 0}",
      "19:25: unknown key 'weight' in uncertainty.vehicle: expected mass_scale, inertia_scale, arm_mass_scale, "
-     "com_offset_m, thrust_scale, rotor_thrust_scale, rotor_time_constant_s, delay_s or "
+     "com_offset_m, thrust_scale, rotor_thrust_scale, rotor_time_constant_s, delay_s, lateral_error_m or "
      "arm_wash_scale\n19:37: unknown key 'weather' "
      "in uncertainty: expected vehicle or sensing"},
     {"max_tilt_deg: 35", "max_tilt_deg: 35\nplanner: {seed: 1}",
