@@ -51,7 +51,7 @@ Problem problem_of_plan(const ReplanArguments& given) {
 std::int64_t tick_at(const ReplanArguments& given, double tick_s) {
     const double ticks = given.at_s / tick_s;
     if (!(ticks >= 0 && ticks <= static_cast<double>(max_plan_ticks))) {
-        throw UsageError("--from is {:g}: expected 0 to {:g} s of the plan", given.at_s,
+        throw UsageError("--after is {:g}: expected 0 to {:g} s of the plan", given.at_s,
                          static_cast<double>(max_plan_ticks) * tick_s);
     }
     return std::llround(ticks);
@@ -134,7 +134,7 @@ void add_replan(Command program, Action& action) {
                     run);
     add_problem(command, given.problem);
     add_plan(command, given.plan);
-    command.add_option("--from S", given.at_s, "moment of the plan from which the new one takes over, in s").required();
+    command.add_option("--after S", given.at_s, "moment of the plan from which the new one takes over, in s").required();
     for (const std::string_view key :
          {"planner.variant", "planner.algorithm", "planner.objective", "planner.seed", "planner.time_limit_s",
           "planner.max_iterations", "planner.safety_margin_m", "planner.check_execution", "planner.certify"}) {

@@ -37,7 +37,7 @@ TEST_CASE("replan plans again from a moment of a plan, in a changed problem") {
     const auto before = work.files("first");
     const nlohmann::json& knot = middle_knot(solved);
     const double at_s = knot.at("t_s").get<double>();
-    const std::string at = "--from=" + knot.at("t_s").dump();
+    const std::string at = "--after=" + knot.at("t_s").dump();
 
     SECTION("where nothing has changed, it is no worse than the rest of the plan") {
         const nlohmann::json again =
@@ -94,8 +94,8 @@ TEST_CASE("replan plans again from a moment of a plan, in a changed problem") {
         CHECK(work.files("first") == before);
     }
     SECTION("but not before the plan, where it failed, or in place of it") {
-        check_rejected(work.run("replan", problem, "--plan first --from=-1"), "--from is -1: expected 0 to 3600 s");
-        check_rejected(work.run("replan", problem, "--plan first"), "--from");
+        check_rejected(work.run("replan", problem, "--plan first --after=-1"), "--after is -1: expected 0 to 3600 s");
+        check_rejected(work.run("replan", problem, "--plan first"), "--after");
         check_rejected(work.run("replan", problem, "--plan first --out first", at), "holds the plan itself");
         check_rejected(work.run("replan", problem, "--plan nowhere", at), "nowhere");
         std::string faster = replaced(work.text("first/effective.yaml"), "rate_hz: 100", "rate_hz: 200");
