@@ -31,7 +31,7 @@ struct State : VehicleState<T> {
 /// How many numbers a state has without older motions.
 inline constexpr int state_numbers = number_count<bool, State<bool>>;
 
-static_assert(sizeof(State<double>) == state_numbers * sizeof(double) + sizeof(FlightMemory::older));
+static_assert(sizeof(State<double>) == state_numbers * sizeof(double) + sizeof(decltype(FlightMemory::older)));
 
 }  // namespace simulation
 
