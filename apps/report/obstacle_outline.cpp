@@ -143,6 +143,7 @@ std::vector<std::vector<std::size_t>> parts_of(const std::vector<Vector3>& verti
         by_root[root(i)].push_back(i);
     }
     std::vector<std::vector<std::size_t>> parts;
+    parts.reserve(by_root.size());
     for (auto& [number, members] : by_root) {
         parts.push_back(std::move(members));
     }
