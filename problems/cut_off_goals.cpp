@@ -58,6 +58,7 @@ bool may_meet(const Goal& goal, const ArmParameters& arm, const PlaneSquare& squ
 std::vector<CutOffGoal> cut_off_goals(const Problem& problem, const Scene& scene) {
     const std::vector<Goal> goals = goals_of(problem);
     std::vector<MayBeIn> regions;
+    regions.reserve(goals.size());
     for (const Goal& goal : goals) {
         regions.emplace_back([&](const PlaneSquare& square) { return may_meet(goal, problem.robot.arm, square); });
     }

@@ -207,7 +207,8 @@ void add_place_warning(const Obstacle& obstacle, const std::string& key, const P
 void add_surface_warnings(const std::string& file, const TriangleMesh& surface, const SurfaceFacts& facts,
                           const std::string& key, std::vector<KeyError>& warnings) {
     for (const std::string& remark : surface.remarks) {
-        warnings.push_back({key, "'" + file + "' " + remark});
+        warnings.push_back({key, "'" + file + "' "});
+        warnings.back().message += remark;
     }
     if (facts.open_edges > 0) {
         const std::size_t sheets = facts.pieces - facts.solid_pieces;
