@@ -294,6 +294,7 @@ std::vector<std::size_t> parting_obstacles(const PartedPlane& plane, std::size_t
     }
     std::sort(by_count.begin(), by_count.end());
     std::vector<std::size_t> kept;
+    kept.reserve(by_count.size());
     for (const auto& [count, obstacle] : by_count) {
         kept.push_back(obstacle);
     }
