@@ -134,7 +134,8 @@ void add_replan(Command program, Action& action) {
                     run);
     add_problem(command, given.problem);
     add_plan(command, given.plan);
-    command.add_option("--after S", given.at_s, "moment of the plan from which the new one takes over, in s").required();
+    command.add_option("--after S", given.at_s, "moment of the plan from which the new one takes over, in s")
+        .required();
     for (const std::string_view key :
          {"planner.variant", "planner.algorithm", "planner.objective", "planner.seed", "planner.time_limit_s",
           "planner.max_iterations", "planner.safety_margin_m", "planner.check_execution", "planner.certify"}) {
