@@ -61,8 +61,8 @@ export function make_success(model) {
     return make_figure(
         "success", "First plan over time",
         "Share of all attempted seeds with a first plan that the planner accepted by what its variant knows: MP-ARM the " +
-            "geometry, MP-ARM-DA the flight in free air, MP-ARM-ADA the flight near surfaces. “Flights that held”, above, says " +
-            "what became of the reported plans when they were executed. Bands are 95 % Wilson intervals.",
+            "geometry, MP-ARM-DA the flight in free air, MP-ARM-ADA the flight near surfaces. Such a plan " +
+            "may fail when executed: the flights above say what became of the reported ones. Bands are 95 % Wilson intervals.",
         panels);
 }
 
