@@ -100,6 +100,14 @@ void PlannerOptions::add(Command command, std::string_view key) {
         .offers(parameter.kind == ParameterKind::flag ? flag_words : parameter.names);
 }
 
+void PlannerOptions::add_of_search(Command command) {
+    for (const std::string_view key :
+         {"planner.variant", "planner.algorithm", "planner.objective", "planner.seed", "planner.time_limit_s",
+          "planner.max_iterations", "planner.safety_margin_m", "planner.check_execution", "planner.certify"}) {
+        add(command, key);
+    }
+}
+
 void PlannerOptions::apply_to(Problem& problem) const {
     if (given_.contains("planner.max_iterations") && !given_.contains("planner.time_limit_s")) {
         problem.planner.time_limit_s.reset();

@@ -15,6 +15,8 @@ class PlannerOptions {
     /// Adds the option of a key: --margin for "planner.safety_margin_m".
     /// @pre the key has one; this object stays where it is as long as the command
     void add(Command command, std::string_view key);
+    /// Adds those of a command that searches.
+    void add_of_search(Command command);
 
     /// Overrides the settings of the file with the options that were given.
     /// @throws UsageError with every option whose value is invalid or out of range

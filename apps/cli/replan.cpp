@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -136,11 +135,7 @@ void add_replan(Command program, Action& action) {
     add_plan(command, given.plan);
     command.add_option("--after S", given.at_s, "moment of the plan from which the new one takes over, in s")
         .required();
-    for (const std::string_view key :
-         {"planner.variant", "planner.algorithm", "planner.objective", "planner.seed", "planner.time_limit_s",
-          "planner.max_iterations", "planner.safety_margin_m", "planner.check_execution", "planner.certify"}) {
-        given.planner.add(command, key);
-    }
+    given.planner.add_of_search(command);
     add_threads(command, given.threads);
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED-replanned/");
     add_force(command, given.force);

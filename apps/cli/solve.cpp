@@ -140,11 +140,7 @@ void add_solve(Command program, Action& action) {
                     "aerodynamics; write solution.json, trajectory.csv, tree.csv, effective.yaml and report.html",
                     run);
     add_problem(command, given.problem);
-    for (const std::string_view key :
-         {"planner.variant", "planner.algorithm", "planner.objective", "planner.seed", "planner.time_limit_s",
-          "planner.max_iterations", "planner.safety_margin_m", "planner.check_execution", "planner.certify"}) {
-        given.planner.add(command, key);
-    }
+    given.planner.add_of_search(command);
     add_threads(command, given.threads);
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/NAME-VARIANT-SEED/");
     add_force(command, given.force);
