@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "downwash/base/vector3.hpp"
@@ -21,6 +22,11 @@ struct SpaceLink {
     Vector3 joint_m = {};  ///< joint in the frame of what the link is mounted on: the multirotor, or the link before
     Vector3 axis = {0, 1, 0};       ///< axis of the joint in the same frame; it is normalised
     Vector3 center_of_mass_m = {};  ///< from the joint, in the link's own axes
+    /// Drag of the whole link in a stream across its way to the next joint or, of the last link, to the end effector;
+    /// one along it has none.
+    DragParameters drag = {};
+    double viscous_friction_nm_s = 0;  ///< of its joint: torque against its rate, per rad/s, >= 0
+    double coulomb_friction_nm = 0;    ///< of its joint: torque against its rate, >= 0
 };
 
 /// One rotor: where it is, which way it pushes and which way it spins.
@@ -41,6 +47,9 @@ struct SpacePlant {
     double thrust_coefficient_n_s2 = 0;
     double rotor_inertia_kg_m2 = 0;       ///< Jr of each rotor about its axis; 0: no gyroscopic term
     double power_coefficient_w_n1p5 = 0;  ///< P = coefficient * thrust^1.5 (docs/model.md 3), >= 0
+    DragParameters drag = {};             ///< of the multirotor at its centre of mass, the same in every direction
+    Vector3 end_effector_m = {};          ///< from the last joint, in the last link's axes; without links in the body's
+    std::optional<WashParameters> wash = {};  ///< of the rotors on the links; empty: rotors blow past them
 };
 
 }  // namespace downwash
