@@ -16,7 +16,7 @@
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_folder.hpp"
-#include "downwash/cli/run_report.hpp"
+#include "downwash/cli/search_results.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/planner/takeover.hpp"
@@ -114,12 +114,8 @@ ExitCode run(const ReplanArguments& given) {
         replanned.same_reference_s = same_reference_s(*solution.plan, from.rest);
     }
     solution.replanned = std::move(replanned);
-    const RunRecord record = folder.write(read, given.problem, warnings, solution);
-    if (solution.map != nullptr || solution.planning.iterations > 0 || !solution.interrupted) {
-        write_page(folder.path(), record, given.threads);
-    }
-    fmt::print("{}", given.as_json ? record.solution_text
-                                   : summary_of(verdict_on_search(solution), read, solution, folder.path()));
+    write_search(folder, plannable, solution, std::move(warnings),
+                 {given.problem, given.threads, given.is_quiet, given.as_json});
     return interruption.code() != ExitCode::done ? interruption.code() : exit_code_of(solution);
 }
 
