@@ -30,6 +30,7 @@ py::dict dict_of(const judge::Probability& p) {
 void add_runs(py::dict& document, const judge::WorldRuns& worlds) {
     document["runs"] = worlds.runs.size();
     document["collisions"] = worlds.collisions;
+    document["lateral_collisions"] = worlds.lateral_collisions;
     document["collision_probability"] = dict_of(worlds.collision_probability);
     document["failures"] = worlds.failures;
     document["failure_probability"] = dict_of(worlds.failure_probability);

@@ -45,6 +45,7 @@ TEST_CASE("replan plans again from a moment of a plan, in a changed problem") {
         CHECK(work.files("first") == before);
         CHECK(work.files("again").size() == files_of_a_run);
         CHECK(again.at("status") == "solved");
+        CHECK(again.at("inputs") == solved.at("inputs"));
         const auto& from = again.at("replanned");
         CHECK(from.at("plan") == "first");
         CHECK(from.at("t_s").get<double>() == Approx(at_s));
