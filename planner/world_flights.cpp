@@ -148,6 +148,9 @@ void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::
     for (std::size_t i = first + 1; i <= last; ++i) {
         legs.push_back({plan.segment_to(i)});
     }
+    if (legs.empty()) {
+        return;
+    }
     std::vector<FlightJob> flying;
     std::vector<FlightJob*> owners;
     for (FlightJob& job : jobs) {
