@@ -68,6 +68,10 @@ py::tuple validate(const std::shared_ptr<CoreProblem>& problem, const CoreSoluti
     if (!of.solution.plan) {
         throw_input_error("has no plan to be flown", "the solution");
     }
+    constexpr std::uint64_t most_runs = 10'000'000;
+    if (runs > most_runs) {
+        throw_input_error("is " + std::to_string(runs) + ": expected 0 to " + std::to_string(most_runs), "runs");
+    }
     if ((runs > 0 || world) && !problem->problem().uncertainty) {
         throw_input_error("need to know what is uncertain: the problem has no `uncertainty:`", "worlds");
     }
