@@ -156,7 +156,7 @@ bool CandidateCheck::is_certified(const Plan& plan, double cost) {
         ++result_.attempts;
     } else {
         certificate_ = checks_.worlds->screen(
-            before_.plan.followed_by(plan), goals_.size(), [this] { return check_is_over(); }, world_counter());
+            before_, plan, [this] { return check_is_over(); }, world_counter());
         clock_.has_certified();
     }
     known_at_s_ = clock_.seconds();

@@ -84,7 +84,7 @@ Problem remaining(const Takeover& from, Problem changed) {
     if (changed.energy_budget_j) {
         *changed.energy_budget_j -= from.energy_j;
         if (!(*changed.energy_budget_j > 0)) {
-            throw_input_error("is spent before this moment: the plan has taken " + to_text(from.energy_j) +
+            throw_input_error("is spent before this moment: the plan has taken " + to_text(from.energy_j, 6) +
                                   " J by then: expected more",
                               "goal.energy_budget_j");
         }

@@ -15,13 +15,14 @@ namespace downwash {
 namespace {
 
 /// The goal to which a flight was on the way when it failed.
-/// @param hovers knots at which those at the goals before the last end; a leg ends at each knot but the first
-std::size_t failed_goal(const FlightJob& job, const std::vector<std::size_t>& hovers) {
+/// @param first knot at which its first leg begins; a leg ends at each knot after it
+/// @param hovers knots at which those at the goals before the last end
+std::size_t failed_goal(const FlightJob& job, std::size_t first, const std::vector<std::size_t>& hovers) {
     const FlightLeg* const rejected = job.rejected_leg();
     if (rejected == nullptr) {
         return 0;
     }
-    const std::size_t knot = static_cast<std::size_t>(rejected - job.legs.data()) + 1;
+    const std::size_t knot = first + static_cast<std::size_t>(rejected - job.legs.data()) + 1;
     return static_cast<std::size_t>(std::lower_bound(hovers.begin(), hovers.end(), knot) - hovers.begin());
 }
 
@@ -147,6 +148,9 @@ void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::
     for (std::size_t i = first + 1; i <= last; ++i) {
         legs.push_back({plan.segment_to(i)});
     }
+    if (legs.empty()) {
+        return;
+    }
     std::vector<FlightJob> flying;
     std::vector<FlightJob*> owners;
     for (FlightJob& job : jobs) {
@@ -171,23 +175,32 @@ std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits,
 std::vector<WorldFlight> WorldFlights::fly_from(std::span<const std::optional<FlightState>> starts, const Plan& plan,
                                                 std::size_t visits, std::span<const FlownWorld> worlds,
                                                 const StopCondition& is_over) {
+    std::vector<std::optional<FlightState>> vehicles(starts.begin(), starts.end());
+    return fly_on(vehicles, plan, 0, visits, worlds, is_over);
+}
+
+std::vector<WorldFlight> WorldFlights::fly_on(std::vector<std::optional<FlightState>>& vehicles, const Plan& plan,
+                                              std::size_t first, std::size_t visits, std::span<const FlownWorld> worlds,
+                                              const StopCondition& is_over) {
     const AskingScope scope(is_over_, is_over);
     std::vector<WorldFlight> flights(worlds.size(), {Rejection::unstable, 0});
     std::vector<FlightJob> jobs;
     std::vector<std::size_t> world_of;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
-        if (starts[i]) {
-            jobs.push_back({*starts[i], {}, 0, &worlds[i]});
+        if (vehicles[i]) {
+            jobs.push_back({*vehicles[i], {}, 0, &worlds[i]});
             world_of.push_back(i);
         }
     }
-    const std::span<const Goal> visited = std::span(goals_).first(visits);
-    const std::vector<std::size_t> hovers = hover_ends(*model_, plan.reference, visited);
-    std::size_t knot = 0;
+    const std::span<const Goal> goals = std::span(goals_).first(visits);
+    const std::vector<std::size_t> hovers = hover_ends(*model_, plan.reference, goals);
+    std::size_t knot = first;
     for (std::size_t i = 0; i < hovers.size(); ++i) {
-        advance(jobs, plan, std::exchange(knot, hovers[i]), hovers[i], i);
+        if (hovers[i] > knot) {
+            advance(jobs, plan, std::exchange(knot, hovers[i]), hovers[i], i);
+        }
     }
-    const Plan held = with_hover(plan, visited.back(), *model_);
+    const Plan held = with_hover(plan, goals.back(), *model_);
     advance(jobs, held, knot, held.reference.size() - 1, visits - 1);
     throw_if_over(is_over);  // then some were interrupted
     const bool misses_a_goal = hovers.size() + 1 < visits;
@@ -201,11 +214,15 @@ std::vector<WorldFlight> WorldFlights::fly_from(std::span<const std::optional<Fl
         flights[world_of[i]] = {
             rejection == Rejection::none && misses_a_goal ? Rejection::goal_missed : rejection,
             min_clearance_m(jobs[i]),
-            misses_a_goal && rejection == Rejection::none ? hovers.size() : failed_goal(jobs[i], hovers),
+            misses_a_goal && rejection == Rejection::none ? hovers.size() : failed_goal(jobs[i], first, hovers),
             is_lateral_collision(*model_, jobs[i])};
     }
     if (visits == goals_.size() && !misses_a_goal) {
         touch(jobs, held, world_of, flights, is_over);
+    }
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        std::optional<FlightState>& vehicle = vehicles[world_of[i]];
+        vehicle = flights[world_of[i]].rejection == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
     }
     return flights;
 }

@@ -56,6 +56,14 @@ class DOWNWASH_EXPORT WorldFlights {
                                                     std::span<const FlownWorld> worlds,
                                                     const StopCondition& is_over = {});
 
+    /// The same for a plan that is flown up to a knot already.
+    /// @param vehicles there, nothing where the flight failed; in the end those at the end of the last hover
+    /// @param first that knot: 0, or one at which the hover at a goal ends
+    [[nodiscard]] std::vector<WorldFlight> fly_on(std::vector<std::optional<FlightState>>& vehicles, const Plan& plan,
+                                                  std::size_t first, std::size_t visits,
+                                                  std::span<const FlownWorld> worlds,
+                                                  const StopCondition& is_over = {});
+
     /// Moves vehicles on along a plan, from one of its knots to another; a flight that ended stays as it is.
     /// @param goal number of the goal at which they hover in the end; empty: they are not judged
     void advance(std::vector<FlightJob>& jobs, const Plan& plan, std::size_t first, std::size_t last,

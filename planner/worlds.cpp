@@ -60,6 +60,11 @@ std::vector<double> search_quantiles(const Robot& robot, std::uint64_t number) {
 /// Enough to tell which flights came nearest.
 constexpr ClearanceError rough_clearance{0.1, 0.02};
 
+bool is_same(const std::vector<ReferenceKnot>& a, const std::vector<ReferenceKnot>& b) {
+    return std::ranges::equal(
+        a, b, [](const ReferenceKnot& x, const ReferenceKnot& y) { return x.tick == y.tick && x.point == y.point; });
+}
+
 constexpr std::uint64_t worlds_per_attempt = 1'000'000;
 /// The worlds of screenings are none of any certificate.
 constexpr std::uint64_t first_screening = std::uint64_t{1} << 32U;
@@ -70,7 +75,8 @@ ProblemWorlds::ProblemWorlds(const Problem& problem, const PlannerModel& model, 
     : problem_(problem),
       flights_(problem, model.flight, model.true_map, options.threads, rough_clearance),
       close_flights_(problem, model.flight, model.true_map, options.threads, ClearanceError{}),
-      threads_(options.threads) {
+      threads_(options.threads),
+      fleets_(goals() + 1) {
     if (model.own_map != model.true_map) {
         in_free_air_ = std::make_unique<WorldFlights>(problem, model.flight, model.own_map, options.threads);
     }
@@ -222,8 +228,7 @@ void ProblemWorlds::fly_directly_where_nearest(const Plan& whole, std::span<cons
 
 /// Adds flights in new worlds to a record, until it is known whether the plan passes. @throws WorkStopped
 /// @return whether direct flights agree that it does
-bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t first_world,
-                                        const StopCondition& is_over, const WorldCounter& counter,
+bool ProblemWorlds::fly_for_certificate(const Test& test, const StopCondition& is_over, const WorldCounter& counter,
                                         CertificateRecord& record) {
     constexpr std::uint64_t chunk = 64;   // worlds side by side: a bad plan fails in the first of them
     constexpr int threads_of_chunk = 16;  // that it keeps busy; for more, chunks are flown that are likely to be wanted
@@ -242,36 +247,37 @@ bool ProblemWorlds::fly_for_certificate(const Plan& whole, std::size_t visits, s
             }
             // The map is not the last word where the flights came nearest.
             std::vector<WorldSample> nearest = record.nearest_successes(looked_at);
-            look_closely(whole, visits, nearest, is_over);
+            look_closely(test.whole, test.visits, nearest, is_over);
             if (!record.replace(nearest)) {
                 return true;
             }
             continue;
         }
-        const std::uint64_t first = first_world + record.worlds();
+        const std::uint64_t number = record.worlds();
         const std::uint64_t next = std::min(chunk, wanted);
         if (flown.size() < next) {
             std::vector<FlownWorld> worlds;
-            for (std::uint64_t i = flown.size(); i < std::min(chunks_at_once * chunk, wanted); ++i) {
-                worlds.push_back(world(first + i));
+            const std::uint64_t begin = number + flown.size();
+            for (std::uint64_t i = begin; i < number + std::min(chunks_at_once * chunk, wanted); ++i) {
+                worlds.push_back(world(test.first_world + i));
             }
-            const std::vector<WorldFlight> flights = flights_.fly(whole, visits, worlds, is_over);
+            const std::vector<WorldFlight> flights = test.fly(begin, worlds);
             flown.insert(flown.end(), flights.begin(), flights.end());
         }
         for (std::uint64_t i = 0; i < next; ++i) {
             const WorldFlight& flight = flown.front();
-            record.add({first + i, outcome_of(flight.rejection), flight.min_clearance_m, flight.goal,
-                        flight.is_lateral_collision});
+            record.add({test.first_world + number + i, outcome_of(flight.rejection), flight.min_clearance_m,
+                        flight.goal, flight.is_lateral_collision});
             flown.pop_front();
         }
     }
 }
 
-Certificate ProblemWorlds::tested(const Plan& whole, std::size_t visits, std::uint64_t first_world,
-                                  const StopCondition& is_over, const WorldCounter& counter, CertificateRecord record) {
+Certificate ProblemWorlds::tested(const Test& test, const StopCondition& is_over, const WorldCounter& counter,
+                                  CertificateRecord record) {
     bool is_checked = false;
     try {
-        is_checked = fly_for_certificate(whole, visits, first_world, is_over, counter, record);
+        is_checked = fly_for_certificate(test, is_over, counter, record);
     } catch (const WorkStopped&) {  // it has what was flown so far
     }
     return record.certificate(is_checked);
@@ -280,16 +286,60 @@ Certificate ProblemWorlds::tested(const Plan& whole, std::size_t visits, std::ui
 Certificate ProblemWorlds::certify(const Plan& whole, std::uint64_t attempt, const StopCondition& is_over,
                                    const WorldCounter& counter) {
     const PlannerSettings& settings = problem_.planner;
-    return tested(whole, goals(), attempt * worlds_per_attempt, is_over, counter,
+    const auto fly = [&](std::uint64_t /*number*/, std::span<const FlownWorld> worlds) {
+        return flights_.fly(whole, goals(), worlds, is_over);
+    };
+    return tested({whole, goals(), attempt * worlds_per_attempt, fly}, is_over, counter,
                   CertificateRecord(settings.max_failure_probability, settings.confidence, attempt));
 }
 
-Certificate ProblemWorlds::screen(const Plan& begin, std::size_t visits, const StopCondition& is_over,
+const ScreenedFleet& ProblemWorlds::screened(const Course& course, std::uint64_t worlds, const StopCondition& is_over) {
+    ScreenedFleet& fleet = fleets_[course.goals.size()];
+    if (!is_same(fleet.reference, course.plan.reference)) {
+        fleet = {course.plan.reference, {}};
+    }
+    const std::uint64_t known = fleet.vehicles.size();
+    std::vector<FlownWorld> more;
+    for (std::uint64_t i = known; i < worlds; ++i) {
+        more.push_back(world(first_screening + i));
+    }
+    std::vector<std::optional<FlightState>> vehicles = flights_.starts_in(more);
+    if (!course.goals.empty() && !more.empty()) {
+        Plan flown = course.plan;
+        flown.reference.pop_back();  // the hover at its last goal, which is flown again
+        static_cast<void>(flights_.fly_on(vehicles, flown, 0, course.goals.size(), more, is_over));
+    }
+    fleet.vehicles.insert(fleet.vehicles.end(), vehicles.begin(), vehicles.end());
+    return fleet;
+}
+
+Certificate ProblemWorlds::screen(const Course& before, const Plan& part, const StopCondition& is_over,
                                   const WorldCounter& counter) {
-    constexpr double confidence = 0.8;  // with less, parts pass that no later part can make up for
+    // With less, parts pass that no later part can make up for; where no flight has failed as a whole, that is to be
+    // seen first.
+    constexpr double confidence = 0.8, first_confidence = 0.5;
+    const std::size_t visited = before.goals.size();
+    const Plan whole = before.plan.followed_by(part);
+    const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
+    ScreenedFleet after{with_hover(whole, flights_.goals()[visited], flights_.model()).reference, {}};
+    const auto fly = [&](std::uint64_t number, std::span<const FlownWorld> worlds) {
+        const auto begin = static_cast<std::ptrdiff_t>(number);
+        const ScreenedFleet& fleet = screened(before, number + worlds.size(), is_over);
+        std::vector<std::optional<FlightState>> vehicles(
+            fleet.vehicles.begin() + begin,
+            fleet.vehicles.begin() + begin + static_cast<std::ptrdiff_t>(worlds.size()));
+        std::vector<WorldFlight> flights = flights_.fly_on(vehicles, whole, first, visited + 1, worlds, is_over);
+        after.vehicles.insert(after.vehicles.end(), vehicles.begin(), vehicles.end());
+        return flights;
+    };
     const double share = problem_.planner.max_failure_probability / static_cast<double>(goals());
-    return tested(begin, visits, (first_screening + screenings_++) * worlds_per_attempt, is_over, counter,
-                  CertificateRecord(share, confidence, 1, visits - 1));
+    const Certificate certificate =
+        tested({whole, visited + 1, first_screening, fly}, is_over, counter,
+               CertificateRecord(share, before.attempts > 0 ? confidence : first_confidence, 1, visited));
+    if (certificate.is_given) {
+        fleets_[visited + 1] = std::move(after);
+    }
+    return certificate;
 }
 
 std::optional<std::size_t> weakest_part(const Certificate& certificate) {

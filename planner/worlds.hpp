@@ -1,7 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/planner/certificate.hpp"
@@ -14,6 +18,12 @@
 namespace downwash::planning {
 
 class CertificateRecord;
+
+/// The vehicles at the end of a flight in the first worlds of screenings, nothing where it failed.
+struct ScreenedFleet {
+    std::vector<ReferenceKnot> reference;  ///< flown; empty at the start
+    std::vector<std::optional<FlightState>> vehicles;
+};
 
 /// Told now and then in how many worlds a plan was flown, and in how many it failed.
 using WorldCounter = std::function<void(std::uint64_t worlds, std::uint64_t failures)>;
@@ -41,11 +51,12 @@ class DOWNWASH_EXPORT ProblemWorlds {
     [[nodiscard]] Certificate certify(const Plan& whole, std::uint64_t attempt, const StopCondition& is_over,
                                       const WorldCounter& counter = {});
 
-    /// Flies the beginning of a plan in the same way, in worlds apart. It passes where its last part, the way to one
-    /// goal, probably fails no more often than an equal share for each goal allows. Nothing is claimed of such a plan,
-    /// so this takes nothing from the error that all certificates share.
-    /// @param begin through the first `visits` goals of the problem
-    [[nodiscard]] Certificate screen(const Plan& begin, std::size_t visits, const StopCondition& is_over,
+    /// Flies a plan to the next goal in the same way, in worlds apart: from the vehicles that the course left there. It
+    /// passes where it probably fails no more often than an equal share for each goal allows. Nothing is claimed of
+    /// such a plan, so this takes nothing from the error that all certificates share, and all screenings have the same
+    /// worlds.
+    /// @param part from the end of the course
+    [[nodiscard]] Certificate screen(const Course& before, const Plan& part, const StopCondition& is_over,
                                      const WorldCounter& counter = {});
 
     /// How many goals the problem has.
@@ -56,12 +67,22 @@ class DOWNWASH_EXPORT ProblemWorlds {
     [[nodiscard]] std::vector<std::optional<FlightState>> vehicles_after(const Course& before,
                                                                          std::span<const FlownWorld> worlds);
     [[nodiscard]] FlownWorld world(std::uint64_t index) const;
-    [[nodiscard]] bool fly_for_certificate(const Plan& whole, std::size_t visits, std::uint64_t first_world,
-                                           const StopCondition& is_over, const WorldCounter& counter,
+
+    /// Flights of one plan for a certificate or a screening.
+    struct Test {
+        const Plan& whole;
+        std::size_t visits;         ///< first goals of the problem that it goes through
+        std::uint64_t first_world;  ///< index
+        /// Flies it in worlds that follow the first one. @param number of the first of them, from 0
+        std::function<std::vector<WorldFlight>(std::uint64_t number, std::span<const FlownWorld> worlds)> fly;
+    };
+    [[nodiscard]] bool fly_for_certificate(const Test& test, const StopCondition& is_over, const WorldCounter& counter,
                                            CertificateRecord& record);
-    [[nodiscard]] Certificate tested(const Plan& whole, std::size_t visits, std::uint64_t first_world,
-                                     const StopCondition& is_over, const WorldCounter& counter,
+    [[nodiscard]] Certificate tested(const Test& test, const StopCondition& is_over, const WorldCounter& counter,
                                      CertificateRecord record);
+    /// The fleet at the end of a course in so many first worlds of screenings, or more.
+    [[nodiscard]] const ScreenedFleet& screened(const Course& course, std::uint64_t worlds,
+                                                const StopCondition& is_over);
     /// Flies a plan again in worlds in which it came nearest to an obstacle, and notes what comes of it: closely, and
     /// in some of them around the nearest moment with direct aerodynamics.
     void look_closely(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
@@ -78,7 +99,7 @@ class DOWNWASH_EXPORT ProblemWorlds {
     WorldFlights close_flights_;                 ///< the same with better clearances
     std::unique_ptr<WorldFlights> in_free_air_;  ///< in the planner's own model, where it knows of none
     int threads_;
-    std::uint64_t screenings_ = 0;  ///< so far
+    std::vector<ScreenedFleet> fleets_;  ///< by the number of goals that were visited
 };
 
 /// The goal on whose way the flights of a plan failed most often, from 0; of several the last. Empty if none failed.

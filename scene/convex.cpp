@@ -116,6 +116,14 @@ Bracket core_distance(const Convex& a, const Convex& b, double enough, double be
     constexpr double contact_m = 1e-13;
     constexpr int max_steps = 128;  // a handful for boxes, some ten for round solids
     Vector3 direction = a.center_m - b.center_m;
+    if (b.is_triangle) {
+        // Its plane often tells that it is far enough.
+        const Vector3 normal = cross(b.half_axes_m[1] - b.half_axes_m[0], b.half_axes_m[2] - b.half_axes_m[0]);
+        const double side = dot(normal, direction - b.half_axes_m[0]);
+        if (side != 0) {
+            direction = (side < 0 ? -1.0 : 1.0) * normal;
+        }
+    }
     double squared = dot(direction, direction);
     if (squared == 0) {
         direction = {1, 0, 0};

@@ -424,9 +424,16 @@ FaceCut cut_face(std::span<const Vector3> corners, std::size_t max_comparisons) 
         cut.fault = !is_crossing && comparisons.are_too_many() ? FaceFault::too_large : FaceFault::crossing;
         return cut;
     }
+    double cut_area = 0;
     for (const auto& [a, b, c] : *triangles) {
+        cut_area += std::abs(turn(outline[a], outline[b], outline[c]));
         const auto of_face = [&](std::size_t i) { return static_cast<std::uint32_t>((first + i) % count); };
         cut.triangles.push_back({of_face(a), of_face(b), of_face(c)});
+    }
+    // An outline may go back along itself so that triangles overlap: the face has less area than they have.
+    if (cut_area - area > touching_width * static_cast<double>(count) * size * size) {
+        cut.triangles.clear();
+        cut.fault = FaceFault::crossing;
     }
     return cut;
 }

@@ -204,6 +204,12 @@ template <class Value>
 Option Command::add_option(const std::string& spelling, Value& value, const std::string& description) {
     const std::size_t blank = spelling.find(' ');
     CLI::Option* added = app_->add_option(spelling.substr(0, blank), value, description);
+    if constexpr (std::is_same_v<Value, std::uint64_t> || std::is_same_v<Value, std::optional<std::uint64_t>>) {
+        // CLI11 reads -3 as 2^64 - 3.
+        added->check([](const std::string& text) {
+            return text.starts_with('-') ? "is " + text + ": expected a whole number from 0" : std::string();
+        });
+    }
     return Option(blank == std::string::npos ? added : added->type_name(spelling.substr(blank + 1)));
 }
 

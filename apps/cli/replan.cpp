@@ -16,7 +16,7 @@
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_folder.hpp"
-#include "downwash/cli/run_report.hpp"
+#include "downwash/cli/search_results.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/planner/takeover.hpp"
@@ -47,13 +47,13 @@ Problem problem_of_plan(const ReplanArguments& given) {
     return read_problem(fs::exists(effective, error) ? effective : fs::path(given.problem));
 }
 
-std::int64_t tick_at(const ReplanArguments& given, double tick_s) {
-    const double ticks = given.at_s / tick_s;
-    if (!(ticks >= 0 && ticks <= static_cast<double>(max_plan_ticks))) {
-        throw UsageError("--after is {:g}: expected 0 to {:g} s of the plan", given.at_s,
-                         static_cast<double>(max_plan_ticks) * tick_s);
+/// @param plan that is left
+std::int64_t tick_at(const ReplanArguments& given, const Plan& plan) {
+    if (!(given.at_s >= 0 && given.at_s <= plan.duration_s())) {
+        throw UsageError("--after is {:g}: expected 0 to {:g} s, where the reference of the plan ends", given.at_s,
+                         plan.duration_s());
     }
-    return std::llround(ticks);
+    return std::llround(given.at_s / plan.tick_s);
 }
 
 /// How the rest of the earlier plan flies in the problem as it is now.
@@ -79,7 +79,7 @@ ExitCode run(const ReplanArguments& given) {
     require_whole_plan(given.plan);
     const Problem flown = problem_of_plan(given);
     const Solution earlier = read_solution(plan_file(given.plan), flown);
-    const Takeover from = take_over(flown, *earlier.plan, earlier.order, tick_at(given, earlier.plan->tick_s));
+    const Takeover from = take_over(flown, *earlier.plan, earlier.order, tick_at(given, *earlier.plan));
     std::vector<LocatedError> warnings;
     const PlannableProblem plannable = read_plannable_problem(
         given.problem,
@@ -114,12 +114,8 @@ ExitCode run(const ReplanArguments& given) {
         replanned.same_reference_s = same_reference_s(*solution.plan, from.rest);
     }
     solution.replanned = std::move(replanned);
-    const RunRecord record = folder.write(read, given.problem, warnings, solution);
-    if (solution.map != nullptr || solution.planning.iterations > 0 || !solution.interrupted) {
-        write_page(folder.path(), record, given.threads);
-    }
-    fmt::print("{}", given.as_json ? record.solution_text
-                                   : summary_of(verdict_on_search(solution), read, solution, folder.path()));
+    write_search(folder, plannable, solution, std::move(warnings),
+                 {given.problem, given.threads, given.is_quiet, given.as_json});
     return interruption.code() != ExitCode::done ? interruption.code() : exit_code_of(solution);
 }
 

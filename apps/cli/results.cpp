@@ -98,7 +98,8 @@ std::string order_rows(const VisitOrder& order, bool has_plan, const std::option
 }
 
 /// Where a plan takes over from another one, and how the two join.
-std::string takeover_rows(const Start& start, const Replanned& from, std::string_view unit) {
+std::string takeover_rows(const Problem& problem, const Replanned& from, std::string_view unit) {
+    const Start& start = problem.start;
     const double speed_m_s = std::hypot(start.velocity[plane::x], start.velocity[plane::z]);
     std::string text =
         table_row("starts", fmt::format("at {:.2f} s of {}: x {:.3f} m, z {:.3f} m, arm {:.1f} deg, {:.2f} m/s",
@@ -109,8 +110,10 @@ std::string takeover_rows(const Start& start, const Replanned& from, std::string
                                             "{:.2f} s more",
                                             *from.same_reference_s)
                               : "no plan takes over");
-    text += table_row("earlier plan", fmt::format("its rest ends {} here, cost {:.6g}{}{}", name_of(from.rest_outcome),
-                                                  from.rest_cost, unit.empty() ? "" : " ", unit));
+    text +=
+        table_row("earlier plan", fmt::format("its rest ends {} here{}, cost {:.6g}{}{}", name_of(from.rest_outcome),
+                                              problem.uncertainty ? ", in the nominal world" : "", from.rest_cost,
+                                              unit.empty() ? "" : " ", unit));
     return text;
 }
 
@@ -307,7 +310,7 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
                                                solution.execution_world->index, solution.execution_world->seed));
     }
     if (solution.replanned) {
-        text += takeover_rows(problem.start, *solution.replanned, unit_of(solution.objective));
+        text += takeover_rows(problem, *solution.replanned, unit_of(solution.objective));
     }
     if (solution.order) {
         text += order_rows(*solution.order, solution.plan.has_value(), problem.energy_budget_j);

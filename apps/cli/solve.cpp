@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "downwash/cli/common_options.hpp"
-#include "downwash/cli/input_lines.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_folder.hpp"
-#include "downwash/cli/run_report.hpp"
+#include "downwash/cli/search_results.hpp"
 #include "downwash/planner/remedies.hpp"
 #include "downwash/problems/cut_off_goals.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -107,18 +106,8 @@ ExitCode run(const SolveArguments& given) {
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = downwash::solve(plannable, options);
     }
-    if (const auto warning = unseen_warning(solution, given.problem)) {
-        noting(warnings, given.is_quiet)(*warning);
-    }
-    const InputFacts inputs = input_facts(read, plannable.model->scene());
-    const RunRecord record = folder.write(read, given.problem, warnings, solution, inputs);
-    // In free air there is no map. Without a map and a search there is nothing to be shown yet.
-    if (solution.map != nullptr || solution.planning.iterations > 0 || !solution.interrupted) {
-        write_page(folder.path(), record, given.threads);
-    }
-    fmt::print("{}", given.as_json
-                         ? record.solution_text
-                         : summary_of(verdict_on_search(solution), read, solution, folder.path()) + input_rows(inputs));
+    write_search(folder, plannable, solution, std::move(warnings),
+                 {given.problem, given.threads, given.is_quiet, given.as_json});
     if (given.tries_remedies && read.uncertainty && solution.status != Status::solved && !solution.interrupted) {
         if (lacked_time(solution)) {
             fmt::print("\nMore time would help (--time-limit); nothing else was tried, because no plan has failed.\n");

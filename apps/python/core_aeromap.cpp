@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -60,6 +61,9 @@ py::array_t<double> factor(const CoreProblem& of, const Points& points, int roto
     const FlightModel& model = *of.model();
     const int index = rotor_index(model, rotor);
     const std::size_t count = count_points(points, true);
+    if (!std::all_of(points.data(), points.data() + points.size(), [](double x) { return std::isfinite(x); })) {
+        throw_input_error("hold a number that is not finite: expected finite ones", "points");
+    }
     const bool is_in_world = points.shape(1) == 3;
     const DirectEffect& effect = model.effect(index);
     return at_points<double>(points, count, threads,

@@ -162,24 +162,18 @@ class CorePlanner {
         if (max_iterations && *max_iterations == 0) {
             throw_input_error("is 0: expected at least 1", "max_iterations");
         }
+        std::optional<CoreAnswer> before;
         {
             const std::scoped_lock lock(mutex_);
-            latest_.reset();
+            before = std::exchange(latest_, std::nullopt);
         }
-        return interruptible(stop, [&](Attendance& attendance) {
-            ReplanOptions options{time_limit_s, max_iterations, attendance.token(), {}};
-            options.on_answer = [&](const Answer& answer) {
-                CoreAnswer told = with_problem(answer);
-                {
-                    const std::scoped_lock lock(mutex_);
-                    latest_ = told;
-                }
-                if (!on_answer.is_none()) {
-                    attendance.tell_each([&on_answer, told = std::move(told)] { on_answer(told); });
-                }
-            };
-            return with_problem(planner_.replan(start, tick, change, options));
-        });
+        try {
+            return find_answer(start, tick, change, {time_limit_s, max_iterations, {}, {}}, on_answer, stop);
+        } catch (const InputError&) {  // nothing has changed, so its answer stays the latest
+            const std::scoped_lock lock(mutex_);
+            latest_ = latest_ ? latest_ : before;
+            throw;
+        }
     }
 
     [[nodiscard]] std::optional<CoreAnswer> latest() const {
@@ -222,6 +216,24 @@ class CorePlanner {
     [[nodiscard]] double tick_s() const { return began_with_.model()->tick().tick_s; }
 
  private:
+    CoreAnswer find_answer(const Start& start, std::int64_t tick, const SceneChange& change, ReplanOptions options,
+                           const py::object& on_answer, const py::object& stop) {
+        return interruptible(stop, [&](Attendance& attendance) {
+            options.stop = attendance.token();
+            options.on_answer = [&](const Answer& answer) {
+                CoreAnswer told = with_problem(answer);
+                {
+                    const std::scoped_lock lock(mutex_);
+                    latest_ = told;
+                }
+                if (!on_answer.is_none()) {
+                    attendance.tell_each([&on_answer, told = std::move(told)] { on_answer(told); });
+                }
+            };
+            return with_problem(planner_.replan(start, tick, change, options));
+        });
+    }
+
     /// While it lives no other call may begin.
     class Call {
      public:

@@ -30,6 +30,7 @@ py::dict dict_of(const judge::Probability& p) {
 void add_runs(py::dict& document, const judge::WorldRuns& worlds) {
     document["runs"] = worlds.runs.size();
     document["collisions"] = worlds.collisions;
+    document["lateral_collisions"] = worlds.lateral_collisions;
     document["collision_probability"] = dict_of(worlds.collision_probability);
     document["failures"] = worlds.failures;
     document["failure_probability"] = dict_of(worlds.failure_probability);
@@ -66,6 +67,10 @@ py::tuple validate(const std::shared_ptr<CoreProblem>& problem, const CoreSoluti
                    int threads, const py::object& on_progress, const py::object& stop) {
     if (!of.solution.plan) {
         throw_input_error("has no plan to be flown", "the solution");
+    }
+    constexpr std::uint64_t most_runs = 10'000'000;
+    if (runs > most_runs) {
+        throw_input_error("is " + std::to_string(runs) + ": expected 0 to " + std::to_string(most_runs), "runs");
     }
     if ((runs > 0 || world) && !problem->problem().uncertainty) {
         throw_input_error("need to know what is uncertain: the problem has no `uncertainty:`", "worlds");

@@ -35,8 +35,26 @@ Json tree_json(const NumberTable& tree, std::span<const Axis> axes) {
     return {{"nodes", tree.rows()}, {"data", packed.text()}};
 }
 
-/// The command that repeats the run in its folder: to the byte, unless several goals in turn shared a time limit.
-std::string command_of(const Problem& problem, const Json& solution) {
+/// Why the time of a search decided more than where it ended: then its command does not give the same bytes again.
+/// Empty if it does.
+std::string difference_by_time(const Problem& problem, const Json& solution) {
+    if (problem.planner.max_iterations) {
+        return {};
+    }
+    if (goals_of(problem).size() > 1) {
+        return "several goals shared its time";
+    }
+    const auto unfinished = solution.value(Json::json_pointer("/planning/candidates/unfinished"), std::uint64_t{0});
+    return unfinished > 0 ? "its time ended while a plan was being checked" : "";
+}
+
+/// The command that repeats a run: in its folder or, for a run that took over from a plan, where that one was made.
+/// What it does not repeat stands in `note`.
+struct RepeatedBy {
+    std::string command, note;
+};
+
+RepeatedBy repeated_by(const Problem& problem, const Json& solution) {
     const Json::json_pointer aero("/execution/aero"), world("/execution/world"), iterations("/planning/iterations");
     const bool is_without_aero = solution.contains(aero) && solution[aero] == false;
     const bool is_in_world = solution.contains(world) && solution[world].is_object();
@@ -46,15 +64,26 @@ std::string command_of(const Problem& problem, const Json& solution) {
         command += is_in_world ? " --world " + solution[world].at("index").dump() + " --seed " +
                                      solution[world].at("seed").dump()
                                : "";
-        return command + " --out again";
+        return {command + " --out again", ""};
     }
-    std::string command = "downwash solve effective.yaml";
+    RepeatedBy repeated{"downwash solve effective.yaml", ""};
+    if (solution.contains("replanned")) {
+        const Json& from = solution["replanned"];
+        repeated.command = "downwash replan " + solution.at("problem").at("file").get<std::string>() + " --plan " +
+                           from.at("plan").get<std::string>() + " --after " + from.at("t_s").dump();
+        repeated.note = "Where the first command was given, with the same options.";
+    }
+    const std::string difference = difference_by_time(problem, solution);
     const bool is_split_by_time = goals_of(problem).size() > 1 && !problem.planner.max_iterations;
     if (!is_split_by_time && solution.contains(iterations) && solution[iterations].is_number_unsigned() &&
         solution[iterations] > 0) {
-        command += " --max-iterations " + solution[iterations].dump();
+        repeated.command += " --max-iterations " + solution[iterations].dump();
     }
-    return command;
+    if (!difference.empty()) {
+        repeated.note += (repeated.note.empty() ? "" : " ") +
+                         ("This repeats the search, but not byte for byte: " + difference + ".");
+    }
+    return repeated;
 }
 
 /// The problem with the one place, of all from which a surface could be touched, that the plan chose; other goals as
@@ -77,9 +106,11 @@ bool has_pages() noexcept {
 std::string run_page_data(const RunRecord& run, const FlightModel& model, int threads) {
     const Problem& problem = run.problem;
     const Json solution = Json::parse(run.solution_text);
+    const RepeatedBy repeated = repeated_by(problem, solution);
     Json page{{"schema", "downwash/report/v1"},
               {"version", version()},
-              {"command", command_of(problem, solution)},
+              {"command", repeated.command},
+              {"command_note", repeated.note},
               {"solution", solution},
               {"cost_unit", unit_of(problem.planner.objective)},
               {"effective_yaml", run.problem_text},

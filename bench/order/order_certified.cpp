@@ -81,7 +81,7 @@ void add_targets(Problem& problem, const Goal& like, const Bounds& in, double ap
 /// Targets over the ground and a way back, in the worlds of `uncertainty: {}`.
 Problem open_scene(const Options& options, std::size_t targets, unsigned seed) {
     Problem problem = read_problem(options.open);
-    problem.name = fmt::format("open {}", seed);
+    problem.name = fmt::format("open-{}", seed);
     problem.bounds = {-12, 12, 0.8, 11.5};
     problem.obstacles = {{"ground", Box{{60, 40, 1}}, {0, 0, -0.5}, {}}};
     problem.start = {};

@@ -45,6 +45,7 @@ TEST_CASE("replan plans again from a moment of a plan, in a changed problem") {
         CHECK(work.files("first") == before);
         CHECK(work.files("again").size() == files_of_a_run);
         CHECK(again.at("status") == "solved");
+        CHECK(again.at("inputs") == solved.at("inputs"));
         const auto& from = again.at("replanned");
         CHECK(from.at("plan") == "first");
         CHECK(from.at("t_s").get<double>() == Approx(at_s));
@@ -93,8 +94,17 @@ TEST_CASE("replan plans again from a moment of a plan, in a changed problem") {
                                  Contains("its rest ends ok here") && Contains("-replanned/"));
         CHECK(work.files("first") == before);
     }
+    SECTION("and where nothing but the last hover is left, hovers there") {
+        const std::string end = "--after=" + solved.at("plan").at("reference").back().at("t_s").dump();
+        const nlohmann::json again =
+            work.json("replan", problem, "--plan first", end, "--max-iterations 20 --out again");
+        CHECK(again.at("status") == "solved");
+        CHECK(again.at("plan").at("reference").size() == 1);
+        CHECK(again.at("execution").at("outcome") == "ok");
+    }
     SECTION("but not before the plan, where it failed, or in place of it") {
-        check_rejected(work.run("replan", problem, "--plan first --after=-1"), "--after is -1: expected 0 to 3600 s");
+        check_rejected(work.run("replan", problem, "--plan first --after=-1"), "--after is -1: expected 0 to ");
+        check_rejected(work.run("replan", problem, "--plan first --after=500"), "where the reference of the plan ends");
         check_rejected(work.run("replan", problem, "--plan first"), "--after");
         check_rejected(work.run("replan", problem, "--plan first --out first", at), "holds the plan itself");
         check_rejected(work.run("replan", problem, "--plan nowhere", at), "nowhere");

@@ -72,6 +72,7 @@ TEST_CASE("A plan is validated by an independent flight") {
         const Words uncertain = words("validate run/uncertain.yaml --plan run --quiet --json");
         check_rejected(work.run(uncertain, "--runs 3 --world 3"), "expected one of them");
         check_rejected(work.run(uncertain, "--runs 0"), "expected 1 to");
+        check_rejected(work.run(uncertain, "--runs -3"), "is -3: expected a whole number from 0");
         const Result one = work.succeed(uncertain, "--runs 12 --threads 1");
         const Result two = work.succeed(uncertain, "--runs 12 --threads 2");
         CHECK(one.out == two.out);

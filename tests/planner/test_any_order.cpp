@@ -60,7 +60,7 @@ TEST_CASE("targets in any order are visited in the order that costs least, each 
 
 TEST_CASE("progress of targets in any order counts the work of all searches, and tells of legs") {
     Problem problem = line_of_targets(Variant::mp_arm_ada);
-    problem.planner.max_iterations = 2400;
+    problem.planner.max_iterations = 6000;
     SolveOptions options;
     Progress last;
     bool has_told_of_legs = false;

@@ -519,10 +519,18 @@ TEST_CASE("a search whose start meets the goal goes on without a plan to refine"
     Problem problem = with(Variant::mp_arm_ada);
     problem.goal = test::configuration_goal(problem.start.at[plane::x], problem.start.at[plane::z]);
     problem.goal.hold_s = 1;
-    problem.planner.max_iterations = 1500;  // enough for every chance of one in twenty to come
-    const Solution solution = solve(problem);
-    CHECK(solution.status == Status::solved);
-    CHECK(solution.plan->reference.size() == 1);
+    SolveOptions options;
+    options.finds_stops = true;  // of which there is one: where it is
+    for (const bool in_worlds : {false, true}) {
+        problem.planner.max_iterations = in_worlds ? 50 : 1500;  // every chance of one in twenty comes
+        problem.uncertainty = in_worlds ? std::optional<Uncertainty>(Uncertainty{}) : std::nullopt;
+        const Solution solution = solve(problem, options);
+        CHECK(solution.status == Status::solved);
+        CHECK(solution.plan->reference.size() == 1);
+        REQUIRE(solution.safe_stops);
+        CHECK(solution.safe_stops->moments.size() == 1);
+        CHECK(solution.safe_stops->share_without == 0);
+    }
 }
 
 TEST_CASE("A plan counts if its direct flight reaches the goal and keeps the margin") {

@@ -112,6 +112,11 @@ def test_a_change_that_is_wrong_raises_and_changes_nothing(planner):
     assert same(plan, planner.plan)
     assert planner.problem.sha256 == sha256
     assert planner.latest() is None
+    planner.replan(start, tick, max_iterations=1)
+    answer = planner.latest()
+    with pytest.raises(downwash.InputError, match="no obstacle 'nix'"):
+        planner.replan(start, tick, removed=["nix"])
+    assert planner.latest() is not None and planner.latest().advice == answer.advice
 
 
 def test_obstacles_without_a_name_come_beside_each_other(planner):

@@ -88,6 +88,28 @@ TEST_CASE("the command of a page repeats an execution in another world or in fre
           "downwash execute effective.yaml --plan solution.json --aero off --out again");
 }
 
+TEST_CASE("the page of a run says what its command does not repeat, and of which plan it takes over") {
+    const SolvedRun run;
+    RunRecord record = read_run(run.folder());
+    const auto model = make_flight_model(run.problem);
+    CHECK(json::parse(run_page_data(record, *model))["command_note"] == "");
+    json solution = json::parse(record.solution_text);
+    solution["planning"]["candidates"]["unfinished"] = 1;
+    record.solution_text = solution.dump();
+    CHECK(json::parse(run_page_data(record, *model))["command_note"] == "");  // iterations ended it
+    record.problem.planner.max_iterations.reset();
+    const json timed = json::parse(run_page_data(record, *model));
+    CHECK(timed["command"] == "downwash solve effective.yaml --max-iterations 200");
+    CHECK(timed["command_note"] ==
+          "This repeats the search, but not byte for byte: its time ended while a plan was being checked.");
+    solution["replanned"] = {{"plan", "first"}, {"t_s", 6.5}, {"rest", {{"outcome", "ok"}, {"cost", 1}}}};
+    solution["problem"]["file"] = "changed.yaml";
+    record.solution_text = solution.dump();
+    const json taken_over = json::parse(run_page_data(record, *model));
+    CHECK(taken_over["command"] == "downwash replan changed.yaml --plan first --after 6.5 --max-iterations 200");
+    CHECK_THAT(taken_over["command_note"].get<std::string>(), Catch::Contains("Where the first command was given"));
+}
+
 TEST_CASE("a page carries the flight to the last bit, each column once, the solution, the command and the tree") {
     const SolvedRun run;
     const RunRecord record = read_run(run.folder());

@@ -242,7 +242,9 @@ TEST_CASE("A face that crosses itself or is far from plane is an error with its 
          {flat({{0, 0}, {1, 1}, {1, 0}, {0, 1}}), flat({{0, 0}, {3, 3}, {3, 0}, {0, 1}}), star,
           flat({{0, 0}, {1, 0}, {1, 1}, {3, 1}, {3, 0}, {2, 0}, {2, 2}, {1, 2}, {1, 1}, {0, 1}}),
           // Two squares that touch at a corner, gone around in opposite ways.
-          flat({{0, 0}, {1, 0}, {1, 1}, {1, 2}, {3, 2}, {3, 1}, {1, 1}, {0, 1}})}) {
+          flat({{0, 0}, {1, 0}, {1, 1}, {1, 2}, {3, 2}, {3, 1}, {1, 1}, {0, 1}}),
+          // A triangle with two spikes that leave its corner across each other.
+          flat({{10, 0}, {0, 0}, {0, 10}, {0, -1}, {-1, 0}, {0, 0}})}) {
         for (std::size_t first = 0; first < polygon.size(); ++first) {
             CAPTURE(polygon, first);
             CHECK(said_of(placed(started_at(polygon, first), {0.3, 0.2, 0.1}, {1, 2, 3}, 1)) ==

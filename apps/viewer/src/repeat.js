@@ -38,6 +38,11 @@ export function make_obstacle_table({scene: {obstacles}}) {
     return details;
 }
 
+/** From what plan a run took over. */
+function takeover_text({plan, t_s, rest}) {
+    return [`at ${number(t_s, ".2f")} s of `, foreign(plan), `, whose rest ends ${rest.outcome} here, cost ${number(rest.cost, ".6g")}`];
+}
+
 export function make_repeat(model) {
     const {report, solution} = model;
     const row = (name, value) => h("div", null, h("dt", null, name), h("dd", null, value));
@@ -45,7 +50,9 @@ export function make_repeat(model) {
     return h(
         "section", {class: "repeat", "aria-labelledby": "repeat-title"}, h("h2", {id: "repeat-title"}, title),
         report.command ? make_command(report.command) : null,
+        report.command_note ? h("p", {class: "muted"}, foreign(report.command_note)) : null,
         h("dl", {class: "pairs"}, row("version", `downwash ${report.version ?? solution.version}`),
+          solution.replanned ? row("starts", takeover_text(solution.replanned)) : null,
           row("seed", String(solution.seed)),
           row("variant", `${solution.variant}${variants[solution.variant] ? `: ${variants[solution.variant]}` : ""}`),
           row("algorithm", solution.algorithm), row("objective", model.objective),

@@ -8,12 +8,17 @@ function points(curve, quantile) {
     return curve.filter(({cost}) => Number.isFinite(cost[quantile])).map(({time_s, cost}) => [time_s, cost[quantile]]);
 }
 
+/** A search has a cost until it finds a cheaper plan: corners of the steps between the points, the first point first. */
+function stairs(list) {
+    return list.flatMap(([time_s, cost], i) => i > 0 ? [[time_s, list[i - 1][1]], [time_s, cost]] : [[time_s, cost]]);
+}
+
 function joined(list, {x, y}) {
     return list.map(([time_s, cost]) => `${x(time_s).toFixed(1)} ${y(cost).toFixed(1)}`).join("L");
 }
 
 function draw_curve({cost_curve, planner}, frame) {
-    const median = points(cost_curve, "50"), low = points(cost_curve, "25"), high = points(cost_curve, "75");
+    const [low, median, high] = ["25", "50", "75"].map((quantile) => stairs(points(cost_curve, quantile)));
     const parts = [];
     if (high.length > 0) {
         const from = high[0][0];
