@@ -11,6 +11,17 @@
 
 namespace downwash::dynamics {
 
+/// The Gauss rule with twelve points: shares of the part of an arm that may be inside, and weights.
+inline constexpr int wash_points = 12;
+inline constexpr double wash_point[wash_points] = {0.009219682876640378, 0.0479413718147626,  0.11504866290284765,
+                                                   0.20634102285669126,  0.31608425050090994, 0.43738329574426554,
+                                                   0.5626167042557344,   0.6839157494990901,  0.7936589771433087,
+                                                   0.8849513370971523,   0.9520586281852375,  0.9907803171233596};
+inline constexpr double wash_weight[wash_points] = {0.023587668193255917, 0.05346966299765909, 0.08003916427167317,
+                                                    0.10158371336153292,  0.11674626826917739, 0.12457352290670144,
+                                                    0.12457352290670144,  0.11674626826917739, 0.10158371336153292,
+                                                    0.08003916427167317,  0.05346966299765909, 0.023587668193255917};
+
 /// Speed of the air in a slipstream over the speed that momentum theory has at the disc, along the rotor's axis.
 /// @param depth below the disc, in radii of the rotor   @param away_squared square of the distance from the axis, in
 /// radii
@@ -56,8 +67,8 @@ struct AcrossLoad {
     T moment_nm;  ///< about the joint
 };
 
-/// What one slipstream changes of the arm's drag. The Gauss rule with twelve points runs over the part of the arm that
-/// may be inside: docs/model.md 2.7 says how exact that is.
+/// What one slipstream changes of the arm's drag. The Gauss rule runs over the part of the arm that may be inside:
+/// docs/model.md 2.7 says how exact that is.
 /// @param lateral_m distance of the rotor from the arm's plane, >= 0
 template <class T>
 AcrossLoad<T> load_of_slipstream(const WashedArm<T>& arm, double radius_m, double lateral_m) {
@@ -89,21 +100,13 @@ AcrossLoad<T> load_of_slipstream(const WashedArm<T>& arm, double radius_m, doubl
     const auto drag = [&](T speed_m_s) {
         return (arm.drag_n_s_m + arm.drag_n_s2_m2 * lane::abs(speed_m_s)) * speed_m_s;
     };
-    static constexpr double point[] = {0.009219682876640378, 0.0479413718147626,  0.11504866290284765,
-                                       0.20634102285669126,  0.31608425050090994, 0.43738329574426554,
-                                       0.5626167042557344,   0.6839157494990901,  0.7936589771433087,
-                                       0.8849513370971523,   0.9520586281852375,  0.9907803171233596};
-    static constexpr double weight[] = {0.023587668193255917, 0.05346966299765909, 0.08003916427167317,
-                                        0.10158371336153292,  0.11674626826917739, 0.12457352290670144,
-                                        0.12457352290670144,  0.11674626826917739, 0.10158371336153292,
-                                        0.08003916427167317,  0.05346966299765909, 0.023587668193255917};
-    for (int i = 0; i < 12; ++i) {
-        const T from_joint_m = first_m + T(point[i]) * length_m;
+    for (int i = 0; i < wash_points; ++i) {
+        const T from_joint_m = first_m + T(wash_point[i]) * length_m;
         const T depth = (arm.hub_z_m - from_joint_m * arm.along_z) * inverse_radius_1_m;
         const T beside = (from_joint_m * arm.along_x - arm.hub_x_m) * inverse_radius_1_m;
         const T wash_m_s = across_m_s * slipstream_speed(depth, beside * beside + lateral_squared);
         const T still_m_s = arm.joint_m_s + arm.rate_rad_s * from_joint_m;
-        const T force_n = T(weight[i]) * share * (drag(still_m_s) - drag(still_m_s - wash_m_s));
+        const T force_n = T(wash_weight[i]) * share * (drag(still_m_s) - drag(still_m_s - wash_m_s));
         load.force_n = load.force_n + force_n;
         load.moment_nm = load.moment_nm + force_n * from_joint_m;
     }

@@ -47,17 +47,17 @@ CeilingLoad<T> ceiling_load(const CeilingContact& contact, const T* q, const T* 
 
 /// Surroundings with a ceiling to touch: what they are without it, and the load.
 template <SpaceSurroundings<double> Around>
-struct UnderCeiling {
-    const Around& around;
+struct UnderCeiling : Around {
+    UnderCeiling(const Around& around, const CeilingContact& ceiling) : Around(around), contact(ceiling) {}
     const CeilingContact& contact;
 
-    double thrust_ratio(int rotor, const LaneVector<double>& hub_m) const { return around.thrust_ratio(rotor, hub_m); }
-    void add_load(const double* q, const double* u, const LaneRotation<double>& attitude,
-                  SpaceWrench<double>& wrench) const {
-        around.add_load(q, u, attitude, wrench);
-        const SpaceWrench<double> load = ceiling_load(contact, q, u, attitude).wrench;
-        wrench.force_n = wrench.force_n + load.force_n;
-        wrench.torque_nm = wrench.torque_nm + load.torque_nm;
+    template <int n>
+    void add_load(const double* q, const double* u, const SpacePlaces<double, n>& places,
+                  SpaceLoad<double, n>& load) const {
+        Around::add_load(q, u, places, load);
+        const SpaceWrench<double> wrench = ceiling_load(contact, q, u, places.attitude).wrench;
+        load.wrench.force_n = load.wrench.force_n + wrench.force_n;
+        load.wrench.torque_nm = load.wrench.torque_nm + wrench.torque_nm;
     }
 };
 
@@ -112,7 +112,7 @@ ContactTick<n> contact_tick(const SpaceModel<n>& model, const CeilingContact& co
         tick.steps = 1;
         return tick;
     }
-    const UnderCeiling<Around> surroundings{around, contact};
+    const UnderCeiling<Around> surroundings(around, contact);
     for (double rest_s = dt_s; rest_s > 0;) {
         // Friction decays slip at mu N / v_slip times the mobility.
         const double slip_decay_1_s = contact.friction * load.normal_n * slip_mobility / contact.slip_speed_m_s;

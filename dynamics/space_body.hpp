@@ -28,6 +28,7 @@ struct SpacePlaces {
     LaneVector<T> axis[room_for<n>];
     LaneVector<T> center_m[room_for<n>];          ///< centres of mass of the links
     LaneSymmetric<T> inertia_kg_m2[room_for<n>];  ///< inertia of each link about its centre of mass
+    LaneVector<T> end_effector_m;
 };
 
 /// The places at coordinates q. @param attitude that of q: rotation_of(q + 3)
@@ -53,6 +54,10 @@ template <class T, int n, class P>
         }
         p.center_m[i] = p.joint_m[i] + link_axes * spread<T>(link.center_of_mass_m);
         p.inertia_kg_m2[i] = turned(link_axes, spread<T>(link.inertia_kg_m2));
+    }
+    p.end_effector_m = spread<T>(model.end_effector_m);
+    if constexpr (n > 0) {
+        p.end_effector_m = p.joint_m[n - 1] + link_axes * p.end_effector_m;
     }
     return p;
 }
@@ -179,6 +184,37 @@ template <class T>
 struct SpaceWrench {
     LaneVector<T> force_n, torque_nm;
 };
+
+/// All that acts on a plant: the wrench on all of it as if it were rigid, and the torque of each joint.
+template <class T, int n>
+struct SpaceLoad {
+    SpaceWrench<T> wrench;
+    T joint_torque_nm[room_for<n>];
+};
+
+/// Adds a force at a point: F dP/dq.
+/// @param link that the point belongs to, -1 for the multirotor   @param at_m from the multirotor's centre of mass, in
+/// body axes as is @param force_n
+template <class T, int n>
+void add_force_at(const SpacePlaces<T, n>& p, int link, const LaneVector<T>& at_m, const LaneVector<T>& force_n,
+                  SpaceLoad<T, n>& load) {
+    load.wrench.force_n = load.wrench.force_n + force_n;
+    load.wrench.torque_nm = load.wrench.torque_nm + cross(at_m, force_n);
+    for (int i = 0; i < n && i <= link; ++i) {
+        load.joint_torque_nm[i] = load.joint_torque_nm[i] + dot(p.axis[i], cross(at_m - p.joint_m[i], force_n));
+    }
+}
+
+/// Velocity of a point in body axes [m/s]. @param link,at_m as of add_force_at()   @param u speeds
+template <class T, int n>
+LaneVector<T> velocity_at(const SpacePlaces<T, n>& p, int link, const LaneVector<T>& at_m, const T u[space_speeds<n>]) {
+    LaneVector<T> velocity =
+        turned_back(p.attitude, LaneVector<T>{u[0], u[1], u[2]}) + cross(LaneVector<T>{u[3], u[4], u[5]}, at_m);
+    for (int i = 0; i < n && i <= link; ++i) {
+        velocity = velocity + u[6 + i] * cross(p.axis[i], at_m - p.joint_m[i]);
+    }
+    return velocity;
+}
 
 /// du/dt under a wrench on the multirotor and joint torques. Eliminates the translation, whose mass is the same in
 /// every direction, then the joints from the last to the first, and solves for the angular acceleration.

@@ -45,6 +45,16 @@ void set_multirotor(const SpacePlant& plant, SpaceStructure& structure, SpaceNum
     structure.rotor_count = static_cast<int>(plant.rotors.size());
     structure.has_rotor_lag = plant.time_constant_s > 0;
     structure.has_gyroscopic_term = plant.rotor_inertia_kg_m2 > 0;
+    structure.has_drag = plant.drag.is_any();
+    for (const SpaceLink& link : plant.links) {
+        structure.has_drag = structure.has_drag || link.drag.is_any();
+        structure.has_friction =
+            structure.has_friction || link.viscous_friction_nm_s > 0 || link.coulomb_friction_nm > 0;
+        structure.has_stops = structure.has_stops || link.stop.has_value();
+    }
+    out.body_drag_n_s_m = plant.drag.linear_n_s_m;
+    out.body_drag_n_s2_m2 = plant.drag.quadratic_n_s2_m2;
+    out.end_effector_m = vector_of(plant.end_effector_m);
     out.multirotor_mass_kg = plant.multirotor.mass_kg;
     out.inertia_kg_m2 = symmetric_of(plant.multirotor.inertia_kg_m2);
     out.inverse_inertia_1_kg_m2 = inverse_of(out.inertia_kg_m2);
@@ -58,11 +68,38 @@ void set_multirotor(const SpacePlant& plant, SpaceStructure& structure, SpaceNum
         out.rotor[i++] = {vector_of(rotor.position_m), unit_vector_of(rotor.axis), -spin * rotor.drag_torque_m,
                           spin * spin_kg_m2_s_n0p5};
     }
+    for (i = 0; i < structure.rotor_count; ++i) {
+        out.center_m = out.center_m + 1.0 / structure.rotor_count * out.rotor[i].position_m;
+        out.center_axis = out.center_axis + out.rotor[i].axis;
+    }
+    const double together = std::sqrt(dot(out.center_axis, out.center_axis));
+    out.center_axis = together > 0 ? 1 / together * out.center_axis : LaneVector<double>{0, 0, 1};
 }
 
-SpaceLinkNumbers<double> link_numbers(const SpaceLink& link) {
-    return {link.body.mass_kg, vector_of(link.joint_m), unit_vector_of(link.axis), vector_of(link.center_of_mass_m),
-            symmetric_of(link.body.inertia_kg_m2)};
+SpaceLinkNumbers<double> link_numbers(const SpacePlant& plant, int link) {
+    const auto number = static_cast<std::size_t>(link);
+    const SpaceLink& from = plant.links[number];
+    const bool is_last = number + 1 == plant.links.size();
+    const Vector3& way_m = is_last ? plant.end_effector_m : plant.links[number + 1].joint_m;
+    const double length_m = std::sqrt(dot(way_m, way_m));
+    constexpr double far_rad = 1e6;
+    const JointStop stop = from.stop.value_or(JointStop{-far_rad, far_rad, 0, 0});
+    assert(stop.lower_rad < stop.upper_rad);
+    return {from.body.mass_kg,
+            vector_of(from.joint_m),
+            unit_vector_of(from.axis),
+            vector_of(from.center_of_mass_m),
+            symmetric_of(from.body.inertia_kg_m2),
+            length_m,
+            length_m > 0 ? 1 / length_m : 0,
+            from.drag.linear_n_s_m,
+            from.drag.quadratic_n_s2_m2,
+            from.viscous_friction_nm_s,
+            from.coulomb_friction_nm,
+            stop.lower_rad,
+            stop.upper_rad,
+            stop.stiffness_nm_rad,
+            stop.dissipation_s_rad};
 }
 
 }  // namespace downwash::detail

@@ -16,6 +16,14 @@ struct SpaceBody {
     Matrix3 inertia_kg_m2 = Matrix3{};  ///< about its centre of mass, in the axes of its frame; positive definite
 };
 
+/// A stop at either end of a joint's way: a spring on one side, with the damping of Hunt and Crossley. Neither pulls,
+/// and both only take energy (docs/model.md 2.10).
+struct JointStop {
+    double lower_rad = 0, upper_rad = 0;  ///< where they begin, lower < upper
+    double stiffness_nm_rad = 0;          ///< > 0
+    double dissipation_s_rad = 1;         ///< c: torque k d (1 + c d') at the depth d, >= 0
+};
+
 /// A link of the arm. At joint angles of zero the axes of all links are parallel to the multirotor's.
 struct SpaceLink {
     SpaceBody body;
@@ -23,10 +31,11 @@ struct SpaceLink {
     Vector3 axis = {0, 1, 0};       ///< axis of the joint in the same frame; it is normalised
     Vector3 center_of_mass_m = {};  ///< from the joint, in the link's own axes
     /// Drag of the whole link in a stream across its way to the next joint or, of the last link, to the end effector;
-    /// one along it has none.
+    /// one along it has none. A link without any way has it in every direction.
     DragParameters drag = {};
-    double viscous_friction_nm_s = 0;  ///< of its joint: torque against its rate, per rad/s, >= 0
-    double coulomb_friction_nm = 0;    ///< of its joint: torque against its rate, >= 0
+    double viscous_friction_nm_s = 0;    ///< of its joint: torque against its rate, per rad/s, >= 0
+    double coulomb_friction_nm = 0;      ///< of its joint: torque against its rate, >= 0
+    std::optional<JointStop> stop = {};  ///< of its joint; empty: it turns on
 };
 
 /// One rotor: where it is, which way it pushes and which way it spins.

@@ -52,7 +52,7 @@ struct InVolume : dynamics::CalmSpace {
     explicit InVolume(const VolumeMap& volume) : map(volume) {}
     const VolumeMap& map;
     template <class T>
-    T thrust_ratio(int /*rotor*/, const dynamics::LaneVector<T>& hub_m) const {
+    T thrust_ratio(int /*rotor*/, const dynamics::LaneVector<T>& hub_m, const dynamics::LaneVector<T>& /*axis*/) const {
         T factors;
         for (int lane = 0; lane < lane::width<T>; ++lane) {
             lane::set_number(factors, lane,

@@ -28,7 +28,8 @@ struct PlateUnderOne : dynamics::CalmSpace {
     [[nodiscard]] double factor(int rotor, double z_m) const {
         return is_there && rotor == front_rotor ? curve(std::max(0.0, z_m - plate_m) / radius_m) : 1.0;
     }
-    [[nodiscard]] double thrust_ratio(int rotor, const dynamics::LaneVector<double>& hub_m) const {
+    [[nodiscard]] double thrust_ratio(int rotor, const dynamics::LaneVector<double>& hub_m,
+                                      const dynamics::LaneVector<double>& /*axis*/) const {
         return factor(rotor, hub_m.z);
     }
 };

@@ -84,7 +84,8 @@ struct CeilingFlight {
 struct UnderWideCeiling : dynamics::CalmSpace {
     explicit UnderWideCeiling(const CeilingVehicle& the_vehicle = {}) : vehicle(the_vehicle) {}
     CeilingVehicle vehicle;
-    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& hub_m) const {
+    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& hub_m,
+                                      const dynamics::LaneVector<double>& /*axis*/) const {
         return ceiling_factor_at(vehicle, -hub_m.z);
     }
 };

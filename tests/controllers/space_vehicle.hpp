@@ -29,7 +29,8 @@ inline SpaceModel<0> sample() {
 struct Even : dynamics::CalmSpace {
     explicit Even(double everywhere) : factor(everywhere) {}
     double factor;
-    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& /*hub_m*/) const {
+    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& /*hub_m*/,
+                                      const dynamics::LaneVector<double>& /*axis*/) const {
         return factor;
     }
 };

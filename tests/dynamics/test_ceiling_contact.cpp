@@ -76,7 +76,8 @@ Command lift(double newton) {
 
 /// Suction: thesis (2.18)'s kind of rise towards the ceiling.
 struct Suction : FreeSpace {
-    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& hub_m) const {
+    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& hub_m,
+                                      const dynamics::LaneVector<double>& /*axis*/) const {
         const double distance_m = ceiling_m - hub_m.z;
         return 1 + 0.0008 / (distance_m * distance_m);
     }
@@ -185,7 +186,8 @@ TEST_CASE("At rest under suction the vehicle stays at rest") {
     for (int i = 0; i < 50; ++i) {  // the depth at which springs, suction and weight balance
         state.q[2] = ceiling_m - guard_height_m + depth_m;
         const double push_n =
-            0.9 * mass_kg * 9.80665 * Suction{}.thrust_ratio(0, {0, 0, state.q[2] + 0.01}) - mass_kg * 9.80665;
+            0.9 * mass_kg * 9.80665 * Suction{}.thrust_ratio(0, {0, 0, state.q[2] + 0.01}, {0, 0, 1}) -
+            mass_kg * 9.80665;
         depth_m = push_n / (16 * contact.stiffness_n_m);
     }
     const State start = state;

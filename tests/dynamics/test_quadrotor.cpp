@@ -30,7 +30,8 @@ double ceiling_ratio(double distance_m) {
 }
 constexpr double ceiling_m = 1.0;
 struct Ceiling : FreeSpace {
-    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& hub_m) const {
+    [[nodiscard]] double thrust_ratio(int /*rotor*/, const dynamics::LaneVector<double>& hub_m,
+                                      const dynamics::LaneVector<double>& /*axis*/) const {
         return ceiling_ratio(ceiling_m - hub_m.z);
     }
 };

@@ -75,7 +75,8 @@ std::string mjcf(const SpacePlant& plant, double step_s, const std::string& flyw
     for (std::size_t i = 0; i < plant.links.size(); ++i) {
         const SpaceLink& link = plant.links[i];
         xml << "<body pos='" << text_of(link.joint_m) << "'><joint name='joint" << i << "' type='hinge' axis='"
-            << text_of(link.axis) << "'/>" << inertial(link.body, link.center_of_mass_m);
+            << text_of(link.axis) << "' damping='" << link.viscous_friction_nm_s << "'/>"
+            << inertial(link.body, link.center_of_mass_m);
     }
     for (std::size_t i = 0; i < plant.links.size(); ++i) {
         xml << "</body>";
@@ -145,7 +146,8 @@ double difference(const dynamics::SpaceState<double, n>& state, const double* q)
 
 /// Two seconds under commands that change every tick of 10 ms, or without any.
 template <int n>
-double worst_difference(std::uint64_t seed, bool is_actuated, double time_constant_s) {
+double worst_difference(std::uint64_t seed, bool is_actuated, double time_constant_s,
+                        double viscous_friction_nm_s = 0) {
     constexpr double step_s = 1e-3;
     // MuJoCo's step is of the second order where a body turns about changing axes.
     constexpr int steps_of_mujoco = 20;
@@ -153,6 +155,9 @@ double worst_difference(std::uint64_t seed, bool is_actuated, double time_consta
     SpacePlant plant = random_space_plant(random, n);
     plant.rotor_inertia_kg_m2 = 0;
     plant.time_constant_s = time_constant_s;
+    for (SpaceLink& link : plant.links) {
+        link.viscous_friction_nm_s = viscous_friction_nm_s;
+    }
     const SpaceModel<n> model = make_space_model<n>(plant);
     SpaceWorld world(mjcf(plant, step_s / steps_of_mujoco));
     mjData* const data = world.data();
@@ -198,6 +203,15 @@ TEST_CASE("In space the plant falls and flies as in MuJoCo, with arms of no, one
     check_same_flights<1>();
     check_same_flights<2>();
     check_same_flights<3>();
+}
+
+TEST_CASE("Joints with viscous friction slow down as in MuJoCo") {
+    for (const std::uint64_t seed : {2U, 4U}) {
+        CAPTURE(seed);
+        CHECK(worst_difference<1>(seed, true, 0, 0.02) < 1e-6);
+        CHECK(worst_difference<2>(seed, false, 0, 0.02) < 1e-6);
+        CHECK(worst_difference<3>(seed, true, 0.05, 0.01) < 1e-6);
+    }
 }
 
 TEST_CASE("The gyroscopic term of the rotors is that of flywheels that spin freely in MuJoCo") {

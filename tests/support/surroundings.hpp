@@ -27,7 +27,7 @@ struct RatiosInSpace : dynamics::CalmSpace {
     explicit RatiosInSpace(Ratio of_hub) : ratio(std::move(of_hub)) {}
     Ratio ratio;
     template <class T>
-    T thrust_ratio(int rotor, const dynamics::LaneVector<T>& hub_m) const {
+    T thrust_ratio(int rotor, const dynamics::LaneVector<T>& hub_m, const dynamics::LaneVector<T>& /*axis*/) const {
         return ratio(rotor, hub_m.x, hub_m.y, hub_m.z);
     }
 };
