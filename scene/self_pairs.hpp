@@ -16,7 +16,7 @@ struct SelfPair {
 
 /// The pairs of solids of a robot that have to be compared. Never those of one body or of neighbours: of a link and
 /// what it is mounted on, where links without a solid count as part of what they are mounted on. Nor those that touch
-/// at each of 256 joint angles, spread evenly: they overlap by design.
+/// at each of 256 sets of joint angles, spread evenly within the limits: they overlap by design.
 struct SelfPairs {
     std::vector<SelfPair> within_limits;  ///< those that may touch while all joints are within their limits
     std::vector<SelfPair> beyond_limits;  ///< all
