@@ -6,7 +6,7 @@
 
 #include "downwash/controllers/space_law.hpp"
 #include "downwash/dynamics/space_plant.hpp"
-#include "downwash/scene/shapes.hpp"
+#include "downwash/scene/space_shape.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash {
@@ -15,15 +15,15 @@ namespace downwash {
 struct SpaceLinkLimits {
     double lower_limit_rad = 0, upper_limit_rad = 0;  ///< of its joint, when it is limited
     bool is_limited = false;
-    double max_torque_nm = 0;     ///< of its joint, > 0
-    std::vector<BodyShape> body;  ///< in its own axes, from its joint
+    double max_torque_nm = 0;          ///< of its joint, > 0
+    std::vector<SpaceBodyShape> body;  ///< in its own axes, from its joint
 };
 
 /// An aerial manipulator in space: bodies, rotors, arm and the controller that flies it.
 struct SpaceRobot {
     std::string name;
     SpacePlant plant;
-    std::vector<BodyShape> body;                     ///< of the multirotor, in its frame
+    std::vector<SpaceBodyShape> body;                ///< of the multirotor, in its frame
     std::vector<SpaceLinkLimits> links;              ///< one for each link of the plant
     double rotor_radius_m = 0;                       ///< > 0
     std::vector<double> min_thrust_n, max_thrust_n;  ///< of each rotor: least command, >= 0, and greatest, > least
