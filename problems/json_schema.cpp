@@ -129,6 +129,12 @@ class SchemaWriter {
         if (info.can_be_integers) {
             forms.push_back(array_schema({{"type", "integer"}, {"minimum", 0}}));
         }
+        if (info.can_be_single) {
+            forms.push_back(number_schema(info, "number"));
+        }
+        if (info.can_be_matrix) {
+            forms.push_back(array_schema(array_schema(Json{{"type", "number"}}, 3), 3));
+        }
         if (info.nullable) {
             forms.push_back({{"type", "null"}});
         }
