@@ -206,6 +206,10 @@ const char* title_of(FileKind kind) {
             return "A robot of Downwash";
         case FileKind::campaign:
             return "A campaign of Downwash";
+        case FileKind::space_problem:
+            return "A problem of Downwash in space";
+        case FileKind::space_robot:
+            return "A robot of Downwash in space";
         case FileKind::problem:
             break;
     }
