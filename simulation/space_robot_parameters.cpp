@@ -119,8 +119,8 @@ void add_multirotor(Rows& rows) {
 void require_one_each(const SpaceRobot& robot, std::size_t given, const char* what) {
     const std::size_t rotors = robot.plant.rotors.size();
     if (rotors > 0 && given != rotors) {
-        throw_input_error("has " + std::to_string(given) + " " + what + ": expected " + std::to_string(rotors) +
-                          ", one for each rotor of positions_m");
+        throw_input_error("has " + std::to_string(given) + " " + what + (given == 1 ? "" : "s") + ": expected " +
+                          std::to_string(rotors) + ", one for each rotor of positions_m");
     }
 }
 
@@ -140,7 +140,7 @@ Row of_rotors(std::string_view path, std::string_view description, List list, Me
     row.set = [list, member](SpaceRobot& robot, std::size_t, const Value& value) {
         const auto& given = std::get<std::vector<double>>(value);
         if (given.size() != 1) {
-            require_one_each(robot, given.size(), "numbers");
+            require_one_each(robot, given.size(), "number");
         }
         for (std::size_t k = 0; k < robot.plant.rotors.size(); ++k) {
             member(list(robot)[k]) = given[given.size() == 1 ? 0 : k];
@@ -188,7 +188,7 @@ Row axes() {
     };
     row.set = [](SpaceRobot& robot, std::size_t, const Value& value) {
         const auto& directions = std::get<std::vector<Vector3>>(value);
-        require_one_each(robot, directions.size(), "directions");
+        require_one_each(robot, directions.size(), "direction");
         for (std::size_t k = 0; k < robot.plant.rotors.size(); ++k) {
             robot.plant.rotors[k].axis = directions[k];
         }
@@ -209,7 +209,7 @@ Row spin() {
     };
     row.set = [](SpaceRobot& robot, std::size_t, const Value& value) {
         const auto& spins = std::get<std::vector<double>>(value);
-        require_one_each(robot, spins.size(), "numbers");
+        require_one_each(robot, spins.size(), "number");
         for (std::size_t k = 0; k < spins.size(); ++k) {
             if (spins[k] != 1 && spins[k] != -1) {
                 throw_input_error("has " + to_text(spins[k]) + ": expected 1 or -1");
