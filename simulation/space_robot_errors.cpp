@@ -178,8 +178,9 @@ Errors unusable_rotor_layout(const SpaceRobot& robot) {
                  "that are tilted sideways"}};
     }
     const std::vector<double> shares = thrust_shares(robot.plant, {});
-    const auto least = std::min_element(shares.begin(), shares.end());
-    if (*least < 0) {
+    constexpr double rounding = 1e-9;
+    const auto least = std::find_if(shares.begin(), shares.end(), [](double share) { return share < -rounding; });
+    if (least != shares.end()) {
         return {{"rotors.positions_m",
                  "would need rotor " + std::to_string(least - shares.begin() + 1) +
                      " to pull downwards in a hover: expected the multirotor's centre of mass, [0, 0, 0], between the "

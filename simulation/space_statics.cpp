@@ -154,8 +154,13 @@ WorstPose worst_pose(const SpaceRobot& robot, const std::function<double(const s
 }
 
 std::string joints_text(const std::vector<double>& joints_rad) {
-    constexpr int digits = 3;
-    return "[" + joined(joints_rad, ", ", [](double rad) { return to_text(rad * degrees_per_radian, digits); }) + "]";
+    constexpr double tenths = 10;
+    return "[" +
+           joined(joints_rad, ", ",
+                  [](double rad) {
+                      return to_text(std::round(rad * degrees_per_radian * tenths) / tenths + 0.0);  // no -0
+                  }) +
+           "]";
 }
 
 }  // namespace downwash

@@ -49,7 +49,7 @@ struct WorstPose {
 [[nodiscard]] DOWNWASH_EXPORT WorstPose worst_pose(const SpaceRobot& robot,
                                                    const std::function<double(const std::vector<double>&)>& value);
 
-/// "[30, -90]" in degrees, or "any" without joints.
+/// "[30, -90]" in degrees, to a tenth.
 [[nodiscard]] DOWNWASH_EXPORT std::string joints_text(const std::vector<double>& joints_rad);
 
 }  // namespace downwash

@@ -74,8 +74,8 @@ const Edit robot_edits[] = {
      "21:35: arm.links[1].body[0].capsule.radius_m is 0: expected a number in m from 1e-06 to 100000"},
     {"  attitude: {kp: 3,", "  delay_s: 0.3\n  rate_hz: 1000\n  attitude: {kp: 3,",
      "27:12: controller.delay_s is 0.3: expected at most 64 control ticks, 0.064 s"},
-    {"position: {kp: 2, kd: 2.4}", "type: cascade\n  position: {kp: 2, kd: 2.4}",
-     "24:9: controller.type is 'cascade': expected one of inverse-dynamics or px4-cascade"},
+    {"position: {kp: 2, kd: 2.4}", "type: lqr\n  position: {kp: 2, kd: 2.4}",
+     "24:9: controller.type is 'lqr': expected one of inverse-dynamics or px4-cascade"},
     {"yaw_rate_kp: 5", "yaw_rate_kp: -5",
      "27:60: controller.attitude.yaw_rate_kp is -5: expected a number from 0 to 10000"},
 };
@@ -97,7 +97,7 @@ const Edit problem_edits[] = {
      "11:73: goal.end_effector.direction has no direction: expected a vector other than [0, 0, 0], or null"},
     {"position_m: [3, -2, 2.5]", "position_m: [3, -2, 9]",
      "11:30: goal.end_effector.position_m is out of reach: from anywhere within the bounds the end effector, which "
-     "gets 0.5025 m from the multirotor's centre of mass, misses it by 3.398 m; widen environment.bounds or move the "
+     "gets 0.55 m from the multirotor's centre of mass, misses it by 3.35 m; widen environment.bounds or move the "
      "goal"},
     {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}", "configuration: {}",
      "11:3: goal.configuration is free in every coordinate: expected at least one of x_m, y_m, z_m, yaw_deg or "
