@@ -1,7 +1,10 @@
 #include "downwash/simulation/space_controller_parameters.hpp"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "downwash/base/parameter_factories.hpp"
@@ -12,7 +15,7 @@ namespace {
 using Rows = std::vector<Parameter<SpaceRobot>>;
 
 /// Names of the laws in files, in the order of SpaceLaw.
-constexpr std::string_view law_names[] = {"inverse-dynamics", "px4-cascade"};
+constexpr std::string_view law_names[] = {"model-inversion", "px4-cascade"};
 static_assert(std::size(law_names) == std::variant_size_v<SpaceLaw>);
 
 /// The rows of one law, below `controller`.
@@ -86,7 +89,34 @@ class LawRows {
         return parameters::number<SpaceRobot>(below(path), description, of(member));
     }
     void add(Parameter<SpaceRobot> row) {
-        rows_.push_back(std::move(row).only("with controller.type " + std::string(law_names[law_index()]), &is_flown));
+        const std::string law(law_names[law_index()]);
+        row.condition = "with controller.type " + law;
+        row.applies = &is_flown;
+        const auto known =
+            std::find_if(rows_.begin(), rows_.end(), [&](const auto& other) { return other.path == row.path; });
+        if (known == rows_.end()) {
+            rows_.push_back(std::move(row));
+        } else {  // a key that another law has, too, is one row that serves whichever law flies the robot
+            *known = shared(*known, row, law);
+        }
+    }
+    static Parameter<SpaceRobot> shared(const Parameter<SpaceRobot>& other, const Parameter<SpaceRobot>& own,
+                                        const std::string& law) {
+        Parameter<SpaceRobot> both = own;
+        both.required = own.required && other.required;
+        both.condition = other.condition + " or " + law;
+        both.applies = [other, own](const SpaceRobot& robot, std::size_t i) {
+            return other.applies(robot, i) || own.applies(robot, i);
+        };
+        if (own.get) {
+            both.get = [other, own](const SpaceRobot& robot, std::size_t i) {
+                return (own.applies(robot, i) ? own : other).get(robot, i);
+            };
+            both.set = [other, own](SpaceRobot& robot, std::size_t i, const Value& value) {
+                (own.applies(robot, i) ? own : other).set(robot, i, value);
+            };
+        }
+        return both;
     }
 
     Rows& rows_;
@@ -139,7 +169,7 @@ void add_px4(Rows& rows) {
     law.gain("height_p_1_s", "speed per height error (MPC_Z_P)", &Law::height_p_1_s);
     law.loop("velocity", "horizontal velocity (MPC_XY_VEL_*_ACC)", "m_s2", &Law::velocity);
     law.loop("vertical_velocity", "vertical velocity (MPC_Z_VEL_*_ACC)", "m_s2", &Law::vertical_velocity);
-    law.loop("arm", "every joint of the arm", "rad_s2", &Law::joint);
+    law.loop("joints", "every joint of the arm", "rad_s2", &Law::joint);
     law.gain("attitude_p_1_s", "rate per attitude error (MC_ROLL_P, MC_PITCH_P)", &Law::attitude_p_1_s);
     law.limit("yaw_weight", "weight of yaw beside tilt (MC_YAW_WEIGHT)", 0, 1, &Law::yaw_weight);
     law.loop("rate", "roll and pitch rate", "rad_s2", &Law::rate);
@@ -163,6 +193,16 @@ void add_space_controller_rows(Rows& rows) {
     add_type(rows);
     add_inversion(rows);
     add_px4(rows);
+    // What every law has needs no condition.
+    for (Parameter<SpaceRobot>& row : rows) {
+        SpaceRobot inverting, cascaded;
+        cascaded.controller.law = Px4Cascade{};
+        if (row.path.starts_with("controller.") && row.applies && row.applies(inverting, 0) &&
+            row.applies(cascaded, 0)) {
+            row.condition.clear();
+            row.applies = {};
+        }
+    }
 }
 
 }  // namespace downwash

@@ -75,7 +75,7 @@ const Edit robot_edits[] = {
     {"  attitude: {kp: 3,", "  delay_s: 0.3\n  rate_hz: 1000\n  attitude: {kp: 3,",
      "27:12: controller.delay_s is 0.3: expected at most 64 control ticks, 0.064 s"},
     {"position: {kp: 2, kd: 2.4}", "type: lqr\n  position: {kp: 2, kd: 2.4}",
-     "24:9: controller.type is 'lqr': expected one of inverse-dynamics or px4-cascade"},
+     "24:9: controller.type is 'lqr': expected one of model-inversion or px4-cascade"},
     {"yaw_rate_kp: 5", "yaw_rate_kp: -5",
      "27:60: controller.attitude.yaw_rate_kp is -5: expected a number from 0 to 10000"},
 };
