@@ -14,13 +14,15 @@ namespace downwash {
 namespace {
 
 /// Units as keys end in them and as people read them; a longer suffix stands before its own tail.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 23> our_units{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 25> our_units{{
     {"_kg_m2", "kg m2"},
     {"_w_n1p5", "W/N^1.5"},
     {"_over_radius", "rotor radii"},
     {"_radii", "rotor radii"},
     {"_n_s2_m2", "N s2/m2"},
     {"_n_s_m", "N s/m"},
+    {"_nm_s", "Nm s"},
+    {"_n_s2", "N s2"},
     {"_rad_s", "rad/s"},
     {"_deg_s2", "deg/s2"},
     {"_rad_s2", "rad/s2"},
@@ -199,6 +201,19 @@ std::optional<std::string> first_error(const ParameterInfo& info, const Numbers&
     return std::nullopt;
 }
 
+/// The range is that of what stands on the diagonal.
+std::optional<std::string> matrix_error(const ParameterInfo& info, const std::vector<Vector3>& rows) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (!is_finite(rows[i])) {
+            return "is not finite: expected " + expectation(info);
+        }
+        if (auto error = number_error(info, rows[i][i])) {
+            return error;
+        }
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::string_view last_name(std::string_view path) {
@@ -263,8 +278,10 @@ std::string expectation(const ParameterInfo& info) {
             return (info.names.size() > 1 ? "one of " : "") + joined_names(info.names) +
                    (info.can_be_group ? ", or a group of keys" : "");
         case ParameterKind::numbers:
-            return (info.elements.empty() ? "a list of numbers" : elements_text(info.elements)) + in_unit + range +
-                   or_null;
+            return (info.elements.empty()
+                        ? std::string(info.can_be_single ? "one number for all or a list of them" : "a list of numbers")
+                        : elements_text(info.elements)) +
+                   (info.can_be_matrix ? " or the rows of a 3 x 3 matrix" : "") + in_unit + range + or_null;
         case ParameterKind::points:
             return "a list of [x, y, z]" + in_unit + range;
         case ParameterKind::file:
@@ -311,6 +328,9 @@ std::optional<std::string> value_error(const ParameterInfo& info, const Value& v
         return spread_error(info, *spread);
     }
     if (const auto* points = std::get_if<std::vector<Vector3>>(&value)) {
+        if (info.can_be_matrix) {
+            return matrix_error(info, *points);
+        }
         for (const Vector3& point : *points) {
             if (auto error = first_error(info, point)) {
                 return error;

@@ -58,6 +58,8 @@ struct ParameterInfo {
     bool can_be_list = false;      ///< a group that may be a list of such groups, their keys below "path[]"
     bool can_be_group = false;     ///< a choice that may be a group of keys instead
     bool can_be_integers = false;  ///< a group that may be a list of whole numbers instead
+    bool can_be_single = false;    ///< numbers of any count that may be one number, for all of them
+    bool can_be_matrix = false;    ///< three numbers that may be the rows of a 3 x 3 matrix instead, as points
     Range range;
     std::vector<std::string_view> names;     ///< the names of a choice, or of choices
     std::vector<std::string_view> elements;  ///< the names of numbers, for example {"x", "z"}; the forms of a spread
@@ -139,6 +141,10 @@ struct Parameter : ParameterInfo {
     Parameter or_none() && { return can_be_none = true, std::move(*this); }
     /// See ParameterInfo::can_be_file.
     Parameter or_file() && { return can_be_file = true, std::move(*this); }
+    /// See ParameterInfo::can_be_single.
+    Parameter or_single() && { return can_be_single = true, std::move(*this); }
+    /// See ParameterInfo::can_be_matrix.
+    Parameter or_matrix() && { return can_be_matrix = true, std::move(*this); }
     /// @param is_group whether it has the form of a group now   @param begin gives it that form
     Parameter or_group(std::function<bool(const Model&)> is_group, std::function<void(Model&)> begin) && {
         can_be_group = true;

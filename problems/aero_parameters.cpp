@@ -15,25 +15,20 @@
 namespace downwash {
 namespace {
 
-using Rows = std::vector<Parameter<Problem>>;
+using Rows = std::vector<Parameter<AeroSettings>>;
 using parameters::in;
 
 template <class Member>
-auto aero(Member member) {
-    return in(&Problem::aero, member);
-}
-
-template <class Member>
-Parameter<Problem> number(const std::string& path, std::string_view description, Member member) {
-    return parameters::number<Problem>(path, description, member);
+Parameter<AeroSettings> number(const std::string& path, std::string_view description, Member member) {
+    return parameters::number<AeroSettings>(path, description, member);
 }
 
 /// Nearer to an edge or a pipe K jumps, and a map would need cells without end: the pipe rack's takes 0.5 s at 0.03
 /// radii, 5 s at 0.01, and minutes at 0.
 constexpr double least_distance_radii = 0.03;
 
-bool has_no_map(const Problem& p, std::size_t) {
-    return !p.aero.map;
+bool has_no_map(const AeroSettings& a, std::size_t) {
+    return !a.map;
 }
 
 /// One side's surface effect in the settings.
@@ -46,12 +41,12 @@ void add_model(Rows& rows, const std::string& path, const std::vector<EffectMode
     for (const EffectModelInfo& model : models) {
         names.push_back(model.name);
     }
-    auto model = parameters::row<Problem>(ParameterKind::choice, path + ".model", "the formula");
+    auto model = parameters::row<AeroSettings>(ParameterKind::choice, path + ".model", "the formula");
     model.names = names;
-    model.get = [side](const Problem& p, std::size_t) { return Value(std::string(info((p.aero.*side).model).name)); };
-    model.set = [side](Problem& p, std::size_t, const Value& value) {
+    model.get = [side](const AeroSettings& a, std::size_t) { return Value(std::string(info((a.*side).model).name)); };
+    model.set = [side](AeroSettings& a, std::size_t, const Value& value) {
         if (const EffectModelInfo* named = find_effect_model(std::get<std::string>(value))) {
-            p.aero.*side = named->model;
+            a.*side = named->model;
         }
     };
     rows.push_back(std::move(model));
@@ -60,15 +55,15 @@ void add_model(Rows& rows, const std::string& path, const std::vector<EffectMode
             const ModelParameter& parameter = known.parameters[i];
             auto row = number(
                 path + "." + std::string(parameter.name), parameter.description,
-                [ side, i ](auto& p) -> auto& { return (p.aero.*side).parameters[i]; });
-            row.get = [side, i, which = known.model, otherwise = parameter.source_value](const Problem& p,
+                [ side, i ](auto& a) -> auto& { return (a.*side).parameters[i]; });
+            row.get = [side, i, which = known.model, otherwise = parameter.source_value](const AeroSettings& a,
                                                                                          std::size_t) {
-                return Value((p.aero.*side).model == which ? (p.aero.*side).parameters[i] : otherwise);
+                return Value((a.*side).model == which ? (a.*side).parameters[i] : otherwise);
             };
             row.range = {parameter.low, parameter.high, parameter.is_open, false};
             rows.push_back(std::move(row).only(
                 "with the model " + std::string(known.name),
-                [side, which = known.model](const Problem& p, std::size_t) { return (p.aero.*side).model == which; }));
+                [side, which = known.model](const AeroSettings& a, std::size_t) { return (a.*side).model == which; }));
         }
     }
 }
@@ -80,40 +75,40 @@ std::shared_ptr<const EffectTable> points_in(const std::string& file, const std:
 }
 
 void add_table(Rows& rows, const std::string& path, Side side) {
-    const auto is_table = [side](const Problem& p, std::size_t) { return (p.aero.*side).model == EffectModel::table; };
-    rows.push_back(parameters::file<Problem>(
+    const auto is_table = [side](const AeroSettings& a, std::size_t) { return (a.*side).model == EffectModel::table; };
+    rows.push_back(parameters::file<AeroSettings>(
                        path + ".file", "the table, CSV with z_over_r, perhaps d_over_r, and factor",
-                       in(aero(side), &SurfaceEffect::file),
-                       [side](Problem& p, std::size_t, const std::string& name) {
-                           (p.aero.*side).table = points_in(name, (p.aero.*side).pipe_radii);
+                       in(side, &SurfaceEffect::file),
+                       [side](AeroSettings& a, std::size_t, const std::string& name) {
+                           (a.*side).table = points_in(name, (a.*side).pipe_radii);
                        },
-                       [side](const Problem& p, std::size_t) { return digest_of(*(p.aero.*side).table); })
+                       [side](const AeroSettings& a, std::size_t) { return digest_of(*(a.*side).table); })
                        .only("with the model table", is_table));
     auto pipe = number(
         path + ".pipe_radii",
         "the table was measured with the hub over the axis of a pipe of this radius, in rotor radii, and holds for the "
         "whole disc; null: over a wide, flat surface",
-        in(aero(side), &SurfaceEffect::pipe_radii));
-    pipe.set = [side, keep = pipe.set](Problem& p, std::size_t i, const Value& value) {
-        keep(p, i, value);
-        if ((p.aero.*side).table) {
-            (p.aero.*side).table = points_in((p.aero.*side).file, (p.aero.*side).pipe_radii);
+        in(side, &SurfaceEffect::pipe_radii));
+    pipe.set = [side, keep = pipe.set](AeroSettings& a, std::size_t i, const Value& value) {
+        keep(a, i, value);
+        if ((a.*side).table) {
+            (a.*side).table = points_in((a.*side).file, (a.*side).pipe_radii);
         }
     };
     rows.push_back(std::move(pipe).between(0.02, 100).only("with the model table", is_table));
     rows.push_back(number(path + ".d_over_r",
                           "second distance of a table over two; null: the distance to the nearest wall at rotor height",
-                          in(aero(side), &SurfaceEffect::d_over_r))
+                          in(side, &SurfaceEffect::d_over_r))
                        .between(0, 10000)
                        .only("with the model table", is_table));
 }
 
 void add_surface(Rows& rows, const std::string& path, const std::string& description,
                  const std::vector<EffectModelInfo>& models, Side side, double TiltLoss::*tilt_loss) {
-    auto surface = parameters::group<Problem>(path, description).or_none().only("without aero.map", has_no_map);
-    surface.resize = [side](Problem& p, std::size_t, std::size_t count) {
+    auto surface = parameters::group<AeroSettings>(path, description).or_none().only("without aero.map", has_no_map);
+    surface.resize = [side](AeroSettings& a, std::size_t, std::size_t count) {
         if (count == 0) {
-            p.aero.*side = EffectModel::none;
+            a.*side = EffectModel::none;
         }
     };
     rows.push_back(std::move(surface));
@@ -123,62 +118,62 @@ void add_surface(Rows& rows, const std::string& path, const std::string& descrip
         number(path + ".tilt_loss",
                "how fast the effect fades with the tilt of a rotor: K - 1 is halved where it equals tilt_loss "
                "times the squared sine of the tilt; 0: a tilted rotor counts as level",
-               in(aero(&AeroSettings::tilt_loss), tilt_loss))
+               in(&AeroSettings::tilt_loss, tilt_loss))
             .between(0, 100));
-}
-
-void add_map(Rows& rows) {
-    rows.push_back(parameters::file<Problem>(
-        "aero.map", "K on a grid of rotor positions, a CSV file, in place of the models; null: none",
-        aero(&AeroSettings::map_file),
-        [](Problem& p, std::size_t, const std::string& name) {
-            p.aero.map = std::make_shared<const FactorGrid>(read_factor_grid(name, p.plane));
-        },
-        [](const Problem& p, std::size_t) { return sha256_hex(vti_text(*p.aero.map)); }));
 }
 
 }  // namespace
 
-void add_aero_rows(Rows& rows) {
-    auto group = parameters::group<Problem>("aero", "how surfaces act on the rotors").or_none();
-    group.count = [](const Problem& p, std::size_t) { return std::size_t{p.aero.enabled ? 1U : 0U}; };
-    group.resize = [](Problem& p, std::size_t, std::size_t count) { p.aero.enabled = count > 0; };
-    rows.push_back(std::move(group));
-    add_map(rows);
+Rows aero_rows() {
+    Rows rows;
     std::vector<EffectModelInfo> below(effect_models().begin(), effect_models().end());
     std::vector<EffectModelInfo> above = below;
     std::erase_if(above, [](const EffectModelInfo& model) {  // a fountain rises from the ground only
         return model.model == EffectModel::multirotor_body;
     });
-    add_surface(rows, "aero.ground", "surfaces below a rotor", below, &AeroSettings::ground, &TiltLoss::ground);
-    add_surface(rows, "aero.ceiling", "surfaces above a rotor", above, &AeroSettings::ceiling, &TiltLoss::ceiling);
-    const auto wall = [](auto member) { return in(aero(&AeroSettings::wall), member); };
+    add_surface(rows, "ground", "surfaces below a rotor", below, &AeroSettings::ground, &TiltLoss::ground);
+    add_surface(rows, "ceiling", "surfaces above a rotor", above, &AeroSettings::ceiling, &TiltLoss::ceiling);
+    const auto wall = [](auto member) { return in(&AeroSettings::wall, member); };
     parameters::append(
         rows,
-        {parameters::group<Problem>(
-             "aero.wall",
+        {parameters::group<AeroSettings>(
+             "wall",
              "what walls beside the vehicle do to it, as shares of the thrust; they fade with the gap to the nearest "
              "rotor's edge"),
-         number("aero.wall.force", "horizontal force where a rotor touches the wall, positive: away from it",
+         number("wall.force", "horizontal force where a rotor touches the wall, positive: away from it",
                 wall(&WallEffect::force))
              .between(-0.2, 0.2),
-         number("aero.wall.moment",
+         number("wall.moment",
                 "pitch moment there, over thrust and rotor radius, positive: the side towards the wall sinks",
                 wall(&WallEffect::moment))
              .between(-0.5, 0.5),
-         number("aero.wall.decay_radii", "gap in rotor radii over which both fall to 1/e",
-                wall(&WallEffect::decay_radii))
+         number("wall.decay_radii", "gap in rotor radii over which both fall to 1/e", wall(&WallEffect::decay_radii))
              .between(0.05, 20),
-         number("aero.max_factor",
+         number("max_factor",
                 "most that a surface may multiply thrust by; a low one hides from plans how a near ceiling pulls",
-                aero(&AeroSettings::max_factor))
+                &AeroSettings::max_factor)
              .between(1, 10)
              .only("without aero.map", has_no_map),
-         number("aero.min_distance_radii",
+         number("min_distance_radii",
                 "flyable area: least distance of a rotor's disc from obstacles, where models still apply",
-                aero(&AeroSettings::min_distance_radii))
+                &AeroSettings::min_distance_radii)
              .between(least_distance_radii, 100),
-         number("aero.grid_m", "cell size of the map", aero(&AeroSettings::grid_m)).between(0.001, 10)});
+         number("grid_m", "cell size of the map", &AeroSettings::grid_m).between(0.001, 10)});
+    return rows;
+}
+
+void add_aero_rows(std::vector<Parameter<Problem>>& rows) {
+    rows.push_back(aero_group<Problem>());
+    rows.push_back(parameters::file<Problem>(
+        "aero.map", "K on a grid of rotor positions, a CSV file, in place of the models; null: none",
+        in(&Problem::aero, &AeroSettings::map_file),
+        [](Problem& p, std::size_t, const std::string& name) {
+            p.aero.map = std::make_shared<const FactorGrid>(read_factor_grid(name, p.plane));
+        },
+        [](const Problem& p, std::size_t) { return sha256_hex(vti_text(*p.aero.map)); }));
+    for (const Parameter<AeroSettings>& row : aero_rows()) {
+        rows.push_back(parameters::nested<Problem>(row, "aero.", &Problem::aero));
+    }
 }
 
 }  // namespace downwash

@@ -25,7 +25,8 @@ struct DataFacts {
     CsvFacts csv;
 };
 
-/// Every file of numbers that a problem names, each once.
+/// Every file of numbers that a problem's surface effects name, each once.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<DataFacts> data_facts(const AeroSettings& aero);
 [[nodiscard]] DOWNWASH_EXPORT std::vector<DataFacts> data_facts(const Problem& problem);
 
 /// Reads a file of numbers by itself; its columns tell its kind.

@@ -10,6 +10,7 @@
 #include "downwash/problems/problem.hpp"
 #include "downwash/scene/shapes.hpp"
 #include "downwash/simulation/robot_facts.hpp"
+#include "downwash/simulation/space_robot_facts.hpp"
 
 namespace downwash {
 
@@ -37,6 +38,15 @@ struct InputFacts {
     RobotInput robot;
     std::vector<DataFacts> data;  ///< every file of numbers
 };
+
+/// A robot in space by its name, and what it amounts to.
+struct SpaceRobotInput {
+    std::string name;
+    SpaceRobotFacts facts;
+};
+
+/// The meshes and octrees among obstacles, in their order. @param scene of these obstacles
+[[nodiscard]] DOWNWASH_EXPORT std::vector<GeometryInput> geometry_inputs(const Scene& scene);
 
 /// @param scene of the problem   @pre problem_errors(problem) is empty
 [[nodiscard]] DOWNWASH_EXPORT InputFacts input_facts(const Problem& problem, const Scene& scene);

@@ -129,6 +129,12 @@ class SchemaWriter {
         if (info.can_be_integers) {
             forms.push_back(array_schema({{"type", "integer"}, {"minimum", 0}}));
         }
+        if (info.can_be_single) {
+            forms.push_back(number_schema(info, "number"));
+        }
+        if (info.can_be_matrix) {
+            forms.push_back(array_schema(array_schema(Json{{"type", "number"}}, 3), 3));
+        }
         if (info.nullable) {
             forms.push_back({{"type", "null"}});
         }
@@ -200,6 +206,10 @@ const char* title_of(FileKind kind) {
             return "A robot of Downwash";
         case FileKind::campaign:
             return "A campaign of Downwash";
+        case FileKind::space_problem:
+            return "A problem of Downwash in space";
+        case FileKind::space_robot:
+            return "A robot of Downwash in space";
         case FileKind::problem:
             break;
     }

@@ -8,7 +8,9 @@
 #include "downwash/base/text.hpp"
 #include "downwash/problems/campaign.hpp"
 #include "downwash/problems/problem_parameters.hpp"
+#include "downwash/problems/space_problem_parameters.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
+#include "downwash/simulation/space_robot_parameters.hpp"
 
 namespace downwash {
 namespace {
@@ -94,16 +96,11 @@ std::vector<KeyReference> referenced(const ParameterTable<Model>& table) {
 }  // namespace
 
 std::optional<FileKind> file_kind_named(std::string_view name) {
-    if (name == "problem") {
-        return FileKind::problem;
+    const auto found = std::find(file_kind_names.begin(), file_kind_names.end(), name);
+    if (found == file_kind_names.end()) {
+        return std::nullopt;
     }
-    if (name == "robot") {
-        return FileKind::robot;
-    }
-    if (name == "campaign") {
-        return FileKind::campaign;
-    }
-    return std::nullopt;
+    return static_cast<FileKind>(found - file_kind_names.begin());
 }
 
 std::string_view out_of_plane_remark(std::string_view name) {
@@ -120,11 +117,17 @@ const std::vector<KeyReference>& key_reference(FileKind kind) {
     static const std::vector<KeyReference> problem = referenced(problem_parameters());
     static const std::vector<KeyReference> robot = referenced(robot_parameters());
     static const std::vector<KeyReference> campaign = referenced(campaign_parameters());
+    static const std::vector<KeyReference> space_problem = referenced(space_problem_parameters());
+    static const std::vector<KeyReference> space_robot = referenced(space_robot_parameters());
     switch (kind) {
         case FileKind::robot:
             return robot;
         case FileKind::campaign:
             return campaign;
+        case FileKind::space_problem:
+            return space_problem;
+        case FileKind::space_robot:
+            return space_robot;
         case FileKind::problem:
             break;
     }

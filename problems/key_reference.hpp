@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,9 +12,13 @@
 namespace downwash {
 
 /// The kinds of YAML files that are read.
-enum class FileKind { problem, robot, campaign };
+enum class FileKind { problem, robot, campaign, space_problem, space_robot };
 
-/// "problem", "robot" or "campaign"; empty for any other name.
+/// Their names, in that order.
+inline constexpr std::array<std::string_view, 5> file_kind_names{"problem", "robot", "campaign", "space-problem",
+                                                                 "space-robot"};
+
+/// The kind of that name, one of file_kind_names; empty for any other name.
 [[nodiscard]] DOWNWASH_EXPORT std::optional<FileKind> file_kind_named(std::string_view name);
 
 /// A key of a file with what it holds when nobody writes it.

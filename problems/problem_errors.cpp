@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <set>
 #include <string>
 
 #include "downwash/aeromap/aero_map.hpp"
@@ -19,9 +18,9 @@
 #include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_parameters.hpp"
+#include "downwash/problems/shared_checks.hpp"
 #include "downwash/problems/touch_places.hpp"
 #include "downwash/scene/collision_checker.hpp"
-#include "downwash/scene/shape_parameters.hpp"
 #include "downwash/simulation/flight_model.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
 #include "downwash/simulation/world_parameters.hpp"
@@ -44,23 +43,6 @@ std::vector<KeyError> reversed_bounds(const Problem& p) {
     return errors;
 }
 
-std::vector<KeyError> repeated_names(const Problem& p) {
-    std::vector<KeyError> errors;
-    std::set<std::string_view> names;
-    for (std::size_t i = 0; i < p.obstacles.size(); ++i) {
-        const std::string& name = p.obstacles[i].name;
-        if (!name.empty() && !names.insert(name).second) {
-            errors.push_back({"environment.obstacles[" + std::to_string(i) + "].name",
-                              "is '" + excerpt(name) + "' like an obstacle before it: expected a name used once"});
-        }
-    }
-    return errors;
-}
-
-std::vector<KeyError> shapeless_cylinders(const Problem& p) {
-    return shape_errors(p.obstacles, "environment.obstacles");
-}
-
 /// What shows when obstacles are placed: a mesh without area, a scale that makes it huge.
 std::vector<KeyError> unplaceable_obstacles(const ProblemCheck& check) {
     std::vector<KeyError> errors;
@@ -69,24 +51,6 @@ std::vector<KeyError> unplaceable_obstacles(const ProblemCheck& check) {
     } catch (const InputError& invalid) {
         for (const KeyError& error : invalid.errors()) {
             errors.push_back({"environment." + error.key, error.message});
-        }
-    }
-    return errors;
-}
-
-std::vector<KeyError> incomplete_effects(const Problem& p) {
-    std::vector<KeyError> errors;
-    if (p.aero.enabled && !p.aero.map) {
-        for (const auto& [effect, key] :
-             {std::pair(&p.aero.ground, "aero.ground"), {&p.aero.ceiling, "aero.ceiling"}}) {
-            if (effect->model == EffectModel::table && !effect->table) {
-                errors.push_back({std::string(key) + ".file", "is missing: expected the file of the table"});
-            }
-        }
-        if (p.aero.ceiling.model == EffectModel::multirotor_body) {
-            errors.push_back({"aero.ceiling.model",
-                              "is multirotor-body: expected a model without a fountain, which "
-                              "rises from the ground only"});
         }
     }
     return errors;
@@ -263,13 +227,6 @@ std::vector<KeyError> start_not_flyable(const ProblemCheck& check) {
     return {};
 }
 
-std::vector<KeyError> weightless_objective(const Problem& p) {
-    if (p.planner.objective == CostFunction::of_nothing()) {
-        return {{"planner.objective", "has no weight above 0: expected one at least"}};
-    }
-    return {};
-}
-
 std::vector<KeyError> algorithm_of_another_variant(const Problem& p) {
     std::vector<std::string_view> names;
     for (const AlgorithmInfo& algorithm : algorithms()) {
@@ -331,10 +288,10 @@ std::vector<KeyError> unflyable_uncertainty(const Problem& p) {
 
 const std::array<Check<ProblemCheck>, 20> checks{{
     {{"environment.bounds"}, reversed_bounds},
-    {{"environment.obstacles"}, repeated_names},
-    {{"environment.obstacles"}, shapeless_cylinders},
+    {{"environment.obstacles"}, repeated_names<Problem>},
+    {{"environment.obstacles"}, shapeless_cylinders<Problem>},
     {{"environment.obstacles"}, unplaceable_obstacles},
-    {{"aero"}, incomplete_effects},
+    {{"aero"}, incomplete_effects<Problem>},
     {{"environment.bounds", "environment.plane", "aero.map", "robot.rotors"}, unreached_places},
     {{"environment.plane", "aero.map"}, map_of_another_plane},
     {{"aero.map", "robot.rotors"}, map_of_another_rotor},
@@ -348,7 +305,7 @@ const std::array<Check<ProblemCheck>, 20> checks{{
      start_in_collision},
     {{"environment.obstacles", "environment.plane", "start", "robot.rotors", "aero"}, start_not_flyable},
     {{"uncertainty", "robot.uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
-    {{"planner.objective"}, weightless_objective},
+    {{"planner.objective"}, weightless_objective<Problem>},
     {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant},
     {{"planner.variant", "planner.worlds", "planner.max_saturation", "planner.max_pitch_rate_deg_s"},
      flights_without_flying},

@@ -13,6 +13,7 @@
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/goal_parameters.hpp"
 #include "downwash/problems/obstacle_parameters.hpp"
+#include "downwash/problems/planner_parameters.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/uncertainty_parameters.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
@@ -194,106 +195,6 @@ void add_motion(Rows& rows) {
                 .between(0.1, 36000)});
 }
 
-void add_objective(Rows& rows) {
-    rows.push_back(parameters::choice<Problem>("planner.objective", "what a plan should keep small",
-                                               parameters::named(all_objectives),
-                                               in(&Problem::planner, &PlannerSettings::objective))
-                       .or_group([](const Problem& p) { return !p.planner.objective.single(); },
-                                 [](Problem& p) { p.planner.objective = CostFunction::of_nothing(); }));
-    for (const Objective objective : all_objectives) {
-        rows.push_back(number("planner.objective." + std::string(name_of(objective)),
-                              "weight of 1 " + std::string(unit_of(objective)),
-                              [objective](auto& p) -> decltype(auto) { return p.planner.objective.weight(objective); })
-                           .between(0, 1e9));
-    }
-}
-
-/// A row for each name; what it means depends on the algorithm, and so does its default.
-void add_algorithm_parameters(Rows& rows) {
-    rows.push_back(
-        group("planner.parameters",
-              "parameters of the algorithm; `downwash planners` shows each algorithm's with their defaults"));
-    for (const auto& [known, algorithms] : known_parameters()) {
-        const AlgorithmParameter& parameter = *known;
-        const std::string_view name = parameter.name;
-        Parameter<Problem> row = parameters::row<Problem>(
-            ParameterKind::number, "planner.parameters." + std::string(name), parameter.description);
-        row.range = {parameter.low, parameter.high};
-        row.get = [name = name, usual = parameter.value](const Problem& p, std::size_t) {
-            return Value(algorithm_parameter(p.planner, name) != nullptr ? parameter_value(p.planner, name) : usual);
-        };
-        row.set = [name = std::string(name)](Problem& p, std::size_t, const Value& value) {
-            p.planner.parameters[name] = std::get<double>(value);
-        };
-        rows.push_back(std::move(row).only(
-            "with " + joined_names(algorithms),
-            [name = name](const Problem& p, std::size_t) { return algorithm_parameter(p.planner, name) != nullptr; }));
-    }
-}
-
-void add_planner(Rows& rows) {
-    using Settings = PlannerSettings;
-    const auto of = [](auto member) { return in(&Problem::planner, member); };
-    const auto integer = [&](std::string_view path, std::string_view description, auto member) {
-        return parameters::integer<Problem>(path, description, of(member));
-    };
-    append(rows, {group("planner", "how to search"),
-                  parameters::choice<Problem>("planner.variant", "what the planner knows of the physics",
-                                              parameters::named(all_variants), of(&Settings::variant)),
-                  parameters::choice<Problem>(
-                      "planner.algorithm", "how it searches; some plan for some variants only, see `downwash planners`",
-                      algorithm_names(), of(&Settings::algorithm))});
-    add_objective(rows);
-    const auto is_uncertain = [](const Problem& p, std::size_t) { return p.uncertainty.has_value(); };
-    constexpr std::string_view with_uncertainty = "with an uncertainty";
-    append(
-        rows,
-        {number("planner.time_limit_s",
-                "for the search alone, without the last flight; null: 10 s, or none where max_iterations "
-                "is set",
-                of(&Settings::time_limit_s))
-             .above(0)
-             .at_most(1e6),
-         integer("planner.max_iterations", "limit for a run that is repeatable bit for bit", &Settings::max_iterations)
-             .between(1, 1e15),
-         integer("planner.seed", "every random number of the search follows from it", &Settings::seed)
-             .between(0, 4294967295.0),
-         number("planner.safety_margin_m", "least clearance while planning", of(&Settings::safety_margin_m))
-             .between(0, 100),
-         parameters::choice<Problem>("planner.collision_checker",
-                                     "who computes collisions and clearances; in executed flights FCL decides contact "
-                                     "whatever stands here",
-                                     parameters::named(all_collision_checkers), of(&Settings::collision_checker)),
-         number("planner.max_saturation",
-                "greatest demand on a rotor or the joint over its limit while planning; above 1 it is clipped",
-                of(&Settings::max_saturation))
-             .between(1, 1000),
-         number("planner.max_pitch_rate_deg_s",
-                "how fast the vehicle may turn while planning; an edge that turns faster is rejected as unstable; "
-                "null: at any rate",
-                of(&Settings::max_pitch_rate_rad_s))
-             .between(1e-3, 1e5),
-         parameters::flag<Problem>("planner.check_execution",
-                                   "a plan counts only once it was executed well, with direct aerodynamics; false: "
-                                   "also where that flight fails",
-                                   of(&Settings::check_execution)),
-         integer("planner.worlds", "in which every edge has to succeed, the nominal one included", &Settings::worlds)
-             .between(1, 64)
-             .only(with_uncertainty, is_uncertain),
-         parameters::flag<Problem>("planner.certify", "only a plan that gets its certificate counts",
-                                   of(&Settings::certify))
-             .only(with_uncertainty, is_uncertain),
-         number("planner.max_failure_probability", "share of worlds in which a plan may fail",
-                of(&Settings::max_failure_probability))
-             .between(1e-4, 0.5)
-             .only(with_uncertainty, is_uncertain),
-         number("planner.confidence", "that a plan which is called solved does not fail more often",
-                of(&Settings::confidence))
-             .between(0.5, 0.999999)
-             .only(with_uncertainty, is_uncertain)});
-    add_algorithm_parameters(rows);
-}
-
 Rows all_rows() {
     Rows rows;
     rows.push_back(
@@ -305,11 +206,11 @@ Rows all_rows() {
     add_robot(rows);
     add_environment(rows);
     add_aero_rows(rows);
-    add_uncertainty_rows(rows);
+    add_uncertainty_rows(rows, [](const Problem& problem) -> const Robot& { return problem.robot; });
     add_start(rows);
     add_goal_rows(rows);
     add_motion(rows);
-    add_planner(rows);
+    add_planner_rows(rows);
     return rows;
 }
 

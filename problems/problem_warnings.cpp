@@ -11,6 +11,7 @@
 #include "downwash/problems/geometry_warnings.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_check.hpp"
+#include "downwash/problems/shared_checks.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/loop_margins.hpp"
 #include "downwash/simulation/robot_facts.hpp"
@@ -236,16 +237,6 @@ std::vector<KeyError> robot_remarks(const Robot& robot) {
     return all;
 }
 
-std::vector<KeyError> no_margin(const Problem& problem) {
-    if (problem.planner.safety_margin_m > 0 || problem.obstacles.empty()) {
-        return {};
-    }
-    return {{"planner.safety_margin_m",
-             "is 0: plans may pass obstacles at any distance above 0, and the least deviation is a collision; expected "
-             "what "
-             "the vehicle may be off its reference, 0.05 by default"}};
-}
-
 /// A vehicle that need not move.
 std::vector<KeyError> goal_at_start(const Problem& problem) {
     if (!problem.targets.empty()) {
@@ -338,7 +329,7 @@ std::vector<KeyError> warnings_of(const ProblemCheck& check) {
     for (KeyError& warning : all) {
         warning.key.insert(0, "robot.");
     }
-    for (const auto& find : {no_margin, thrust_beyond_rotors, goal_at_start, exact_uncertainty}) {
+    for (const auto& find : {no_margin<Problem>, thrust_beyond_rotors, goal_at_start, exact_uncertainty}) {
         const std::vector<KeyError> found = find(problem);
         all.insert(all.end(), found.begin(), found.end());
     }

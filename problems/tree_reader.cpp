@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <tuple>
+#include <type_traits>
 
 #include "downwash/base/files.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/problems/campaign.hpp"
 #include "downwash/problems/key_remedy.hpp"
+#include "downwash/problems/space_problem.hpp"
 #include "downwash/problems/text_checks.hpp"
 #include "downwash/problems/value_reader.hpp"
+#include "downwash/problems/vehicle_family.hpp"
 #include "downwash/problems/yaml_document.hpp"
 
 namespace downwash::problems {
@@ -30,8 +33,12 @@ std::string key_outside_robot(const std::string& path, std::string_view name) {
 }
 
 /// What a group may be that nobody has thought about yet: a law whose gains all have defaults.
+template <class Model>
 std::string to_begin_with(std::string_view path) {
-    return path == "controller" || path == "robot.controller" ? ", to begin with {type: cascaded-pid}" : "";
+    const bool has_such_a_law = !std::is_same_v<Model, SpaceProblem>;
+    return has_such_a_law && (path == "controller" || path == "robot.controller")
+               ? ", to begin with {type: cascaded-pid}"
+               : "";
 }
 
 }  // namespace
@@ -72,7 +79,7 @@ void TreeReader<Model>::read_text(const std::string& text, const std::filesystem
         const YamlNode::Pointer root = parse_yaml(text);
         if (root->kind != YamlNode::Kind::map) {
             report(path, root->mark, found_text(*root) + ": expected a file of keys and values");
-        } else if (has_supported_schema(*root, path)) {
+        } else if (has_supported_schema(*root, path) && !is_misfit(*root, path, path)) {
             read_keys({path, path, 0, {}, *root, {}, {}});
         }
     } catch (const YamlError& error) {
@@ -101,6 +108,17 @@ bool TreeReader<Model>::has_supported_schema(const YamlNode& root, const std::st
     return true;
 }
 
+/// Nothing of a group is read that is of another kind of vehicle.
+template <class Model>
+bool TreeReader<Model>::is_misfit(const YamlNode& node, const std::string& path, const std::string& key) {
+    const auto found = misfit<Model>(path, node);
+    if (found) {
+        wrong_.add(key);
+        report(found->mark, found->what());
+    }
+    return found.has_value();
+}
+
 template <class Model>
 void TreeReader<Model>::read_keys(Group group) {
     find_entries(group);
@@ -117,7 +135,7 @@ void TreeReader<Model>::read_keys(Group group) {
         } else if (parameter->required && (!parameter->applies || parameter->applies(model_, group.index)) &&
                    std::count(group.meant.begin(), group.meant.end(), name) == 0) {
             report(joined(group.key, name), group.mark,
-                   "is missing: expected " + expectation(*parameter) + to_begin_with(parameter->path));
+                   "is missing: expected " + expectation(*parameter) + to_begin_with<Model>(parameter->path));
         }
     }
 }
@@ -248,6 +266,9 @@ void TreeReader<Model>::read_group(const Parameter<Model>& parameter, const Yaml
                                    const Mark& key_mark, std::size_t index) {
     const bool is_text = node.kind == YamlNode::Kind::scalar;
     if (node.kind == YamlNode::Kind::map) {
+        if (is_misfit(node, parameter.path, key)) {
+            return;
+        }
         parameter.resize(model_, index, 1);
         read_keys({parameter.path, key, index, key_mark, node, {}, {}});
     } else if (parameter.can_be_list && node.kind == YamlNode::Kind::list) {
@@ -400,6 +421,7 @@ std::vector<LocatedError> TreeReader<Model>::located(std::vector<Found> findings
 }
 
 template class TreeReader<Problem>;
+template class TreeReader<SpaceProblem>;
 template class TreeReader<Campaign>;
 
 }  // namespace downwash::problems

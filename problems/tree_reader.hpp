@@ -14,7 +14,7 @@
 namespace downwash::problems {
 
 /// Fills a model from YAML trees along its parameter table and remembers where every key stands.
-/// Made for Problem and Campaign.
+/// Made for Problem, SpaceProblem and Campaign.
 template <class Model>
 class TreeReader {
  public:
@@ -64,6 +64,7 @@ class TreeReader {
     void read_document(const std::filesystem::path& file, const std::string& path, const Mark& referred_from);
     void read_text(const std::string& text, const std::filesystem::path& file, const std::string& path);
     bool has_supported_schema(const YamlNode& root, const std::string& path);
+    bool is_misfit(const YamlNode& node, const std::string& path, const std::string& key);
     void read_keys(Group group);
     void find_entries(Group& group);
     [[nodiscard]] std::string current_name(const Group& group, const YamlNode& key);

@@ -104,6 +104,18 @@ std::vector<Vector3> read_points(const ParameterInfo& info, const YamlNode& node
     return points;
 }
 
+bool is_list_of_lists(const YamlNode& node) {
+    return node.kind == YamlNode::Kind::list && !node.items.empty() && node.items.front()->kind == YamlNode::Kind::list;
+}
+
+std::vector<Vector3> read_matrix(const ParameterInfo& info, const YamlNode& node) {
+    std::vector<Vector3> rows = read_points(info, node);
+    if (rows.size() != 3) {
+        throw YamlError(node.mark, "has " + std::to_string(rows.size()) + " rows: expected " + expectation(info));
+    }
+    return rows;
+}
+
 Spread read_spread(const ParameterInfo& info, const YamlNode& node) {
     if (node.kind == YamlNode::Kind::scalar && !node.is_quoted && parse_number<double>(node.text) == 0.0) {
         return {};
@@ -148,6 +160,12 @@ Value read_typed(const ParameterInfo& info, const YamlNode& node) {
         case ParameterKind::file:
             return read_text(info, node);
         case ParameterKind::numbers:
+            if (info.can_be_single && node.kind == YamlNode::Kind::scalar) {
+                return std::vector{read_number(info, node)};
+            }
+            if (info.can_be_matrix && is_list_of_lists(node)) {
+                return read_matrix(info, node);
+            }
             return info.elements.empty() ? read_elements(info, node, read_number)
                                          : read_numbers(info, node, info.elements.size());
         case ParameterKind::points:

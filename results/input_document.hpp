@@ -11,6 +11,7 @@ namespace downwash {
 /// Numbers of a robot have six digits.
 [[nodiscard]] DOWNWASH_EXPORT std::string geometry_document(const GeometryInput& geometry);
 [[nodiscard]] DOWNWASH_EXPORT std::string robot_document(const RobotInput& robot);
+[[nodiscard]] DOWNWASH_EXPORT std::string robot_document(const SpaceRobotInput& robot);
 [[nodiscard]] DOWNWASH_EXPORT std::string data_document(const DataFacts& data);
 
 }  // namespace downwash

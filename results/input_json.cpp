@@ -99,6 +99,23 @@ std::string robot_document(const RobotInput& robot) {
     return robot_json(robot).dump();
 }
 
+std::string robot_document(const SpaceRobotInput& robot) {
+    const SpaceRobotFacts& facts = robot.facts;
+    Json joints_deg = Json::array();
+    for (const double joint_rad : facts.hover_joints_rad) {
+        joints_deg.push_back(degrees(joint_rad));
+    }
+    return Json{{"robot", robot.name},
+                {"mass_kg", rounded(facts.mass_kg)},
+                {"joints", facts.joints},
+                {"thrust_to_weight", rounded(facts.thrust_to_weight)},
+                {"reach_m", rounded(facts.reach_m)},
+                {"hover_share", rounded(facts.hover_share)},
+                {"hover_rotor", facts.hover_rotor + 1},
+                {"hover_joints_deg", std::move(joints_deg)}}
+        .dump();
+}
+
 std::string data_document(const DataFacts& data) {
     return data_json(data).dump();
 }

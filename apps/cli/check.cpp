@@ -22,9 +22,11 @@
 #include "downwash/problems/key_reference.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/report/problem_figure.hpp"
 #include "downwash/report/problem_page.hpp"
 #include "downwash/results/input_document.hpp"
+#include "downwash/scene/scene.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -64,6 +66,8 @@ struct Findings {
     // What was read, one of them unless there are errors or the file is a campaign:
     std::optional<PlannableProblem> problem;
     std::optional<Robot> robot;
+    std::optional<SpaceProblem> space_problem;
+    std::optional<SpaceRobot> space_robot;
     std::optional<DataFacts> data;
 };
 
@@ -99,7 +103,11 @@ Findings findings_in(const std::string& path) {
     const auto on_warning = [&found](const LocatedError& warning) { found.warnings.push_back(warning); };
     try {
         const std::string kind = kind_of(path);
-        if (kind == "robot") {
+        if (kind == "robot" && is_space_robot_file(path)) {
+            found.space_robot = read_space_robot(path, on_warning);
+        } else if (kind == "problem" && is_space_problem_file(path)) {
+            found.space_problem = read_space_problem(path, {}, on_warning);
+        } else if (kind == "robot") {
             found.robot = read_robot(path, on_warning);
         } else if (kind == "campaign") {
             static_cast<void>(read_campaign(path, on_warning, on_warning));
@@ -142,6 +150,20 @@ std::string add_inputs(const std::string& path, const Findings& found, ReadLists
         const RobotInput robot{found.robot->name, robot_facts(*found.robot)};
         add(lists.robots, {{"problem", nullptr}, {"file", path}}, robot_document(robot), text_of(robot));
     }
+    if (found.space_robot) {
+        const SpaceRobotInput robot{found.space_robot->name, space_robot_facts(*found.space_robot)};
+        add(lists.robots, {{"problem", nullptr}, {"file", path}}, robot_document(robot), text_of(robot));
+    }
+    if (found.space_problem) {
+        const SpaceRobotInput robot{found.space_problem->robot.name, space_robot_facts(found.space_problem->robot)};
+        add(lists.robots, {{"problem", path}, {"file", nullptr}}, robot_document(robot), text_of(robot));
+        for (const GeometryInput& each : geometry_inputs(Scene(found.space_problem->obstacles))) {
+            add(lists.geometry, {{"problem", path}}, geometry_document(each), text_of(each));
+        }
+        for (const DataFacts& each : data_facts(found.space_problem->aero)) {
+            add(lists.data, {{"problem", path}}, data_document(each), text_of(each));
+        }
+    }
     if (found.data) {
         add(lists.data, {{"problem", nullptr}}, data_document(*found.data), text_of(*found.data));
     }
@@ -170,6 +192,11 @@ void require_drawable_request(const CheckArguments& given) {
     if (const std::string kind = kind_of(given.problems.front()); kind != "problem") {
         throw UsageError("{} shows a problem, and {} is a {} file: expected the file of a problem", option,
                          given.problems.front(), kind);
+    }
+    if (is_space_problem_file(given.problems.front())) {
+        throw UsageError(
+            "{} shows problems in a vertical plane, and {} is one in space, as environment.bounds.y_m says", option,
+            given.problems.front());
     }
     if (given.picture) {
         static_cast<void>(picture_format("--picture", *given.picture));
@@ -222,7 +249,7 @@ ExitCode run(const CheckArguments& given) {
         return ExitCode::done;
     }
     if (given.problems.empty()) {
-        throw UsageError("expected problem files, or --schema problem, robot or campaign");
+        throw UsageError("expected problem files, or --schema problem, robot, campaign, space-problem or space-robot");
     }
     auto faults = Json::array();
     auto warnings = Json::array();
@@ -277,7 +304,7 @@ void add_check(Command program, Action& action) {
     Option schema =
         command.add_option("--schema", given.schema,
                            "print the JSON Schema of a kind of file instead, for editors that complete and check YAML");
-    schema.one_of({"problem", "robot", "campaign"});
+    schema.one_of({file_kind_names.begin(), file_kind_names.end()});
     command.add_option("--picture FILE", given.picture,
                        "draw the problem in the plane of motion: scene, bounds, goals, and the robot at its start; a "
                        "picture, .svg, .png or .pdf");

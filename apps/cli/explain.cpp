@@ -116,6 +116,26 @@ std::string keys_with(std::string_view word, const std::vector<KeyReference>& al
     return text;
 }
 
+bool is_of_space(std::string_view kind) {
+    return kind.starts_with("space-");
+}
+
+/// Says where to ask for a key that only files in space have. @return whether it is one
+bool print_if_of_space(const ExplainArguments& given, const std::string& wanted) {
+    const std::string kind = "space-" + given.kind;
+    if (!file_kind_named(kind)) {
+        return false;
+    }
+    const std::vector<KeyReference>& all = key_reference(*file_kind_named(kind));
+    const bool is_there = std::any_of(all.begin(), all.end(), [&](const KeyReference& known) {
+        return ends_with_key(known.info.path, wanted) || ends_with_stem(known.info.path, wanted);
+    });
+    if (is_there) {
+        fmt::print("What flies in space has it: downwash explain {} --of {}\n", given.key, kind);
+    }
+    return is_there;
+}
+
 ExitCode run(const ExplainArguments& given) {
     const std::vector<KeyReference>& all = key_reference(*file_kind_named(given.kind));
     const std::string wanted = without_indices(given.key);
@@ -144,8 +164,13 @@ ExitCode run(const ExplainArguments& given) {
             return ExitCode::done;
         }
     }
-    if (const std::string_view remark = out_of_plane_remark(last_name(wanted)); !remark.empty()) {
+    if (const std::string_view remark = out_of_plane_remark(last_name(wanted));
+        !remark.empty() && !is_of_space(given.kind)) {
         fmt::print("No key is called '{}': {}.\n", excerpt(given.key), remark);
+        print_if_of_space(given, wanted);
+        return ExitCode::done;
+    }
+    if (!is_of_space(given.kind) && print_if_of_space(given, wanted)) {
         return ExitCode::done;
     }
     if (const std::string about = keys_about(wanted, all); !about.empty() && !wanted.empty()) {
@@ -173,8 +198,10 @@ void add_explain(Command program, Action& action) {
                     "a key (safety_margin_m), a path of keys (planner.safety_margin_m), or a word (margin) of keys or "
                     "their descriptions")
         .required();
-    Option option = command.add_option("--of", given.kind, "kind of file; default problem, with its robot");
-    option.one_of({"problem", "robot", "campaign"});
+    Option option = command.add_option(
+        "--of", given.kind,
+        "kind of file; default problem, with its robot; what flies in space is of space-problem and space-robot");
+    option.one_of({file_kind_names.begin(), file_kind_names.end()});
 }
 
 }  // namespace downwash::cli

@@ -124,6 +124,14 @@ std::string text_of(const RobotInput& robot) {
         rounded(100 * facts.hover_share), margins_text(facts.margins));
 }
 
+std::string text_of(const SpaceRobotInput& robot) {
+    const SpaceRobotFacts& facts = robot.facts;
+    return fmt::format(
+        "{}: {} kg, {}, thrust {} times the weight, reach {} m, hover at {} % of the weakest rotor's thrust",
+        excerpt(robot.name), rounded(facts.mass_kg), counted(static_cast<std::size_t>(facts.joints), "joint"),
+        rounded(facts.thrust_to_weight), rounded(facts.reach_m), rounded(100 * facts.hover_share));
+}
+
 std::string text_of(const DataFacts& data) {
     return fmt::format("{}: {} of {}, {}; {}", excerpt(std::filesystem::path(data.file).filename().string()),
                        words_for(data.kind), counted(data.csv.rows, "row"), columns_text(data.csv),

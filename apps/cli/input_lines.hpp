@@ -15,6 +15,9 @@ namespace downwash::cli {
 /// The robot, then what it amounts to: "ars_lrm: 4.95 kg, thrust 2.31 times the weight, reach 1.2 m, ...".
 [[nodiscard]] std::string text_of(const RobotInput& robot);
 
+/// The same of a robot in space: "hexa370_arm3: 2.56 kg, 3 joints, thrust 4.95 times the weight, ...".
+[[nodiscard]] std::string text_of(const SpaceRobotInput& robot);
+
 /// The file, then how it was read: "k.csv: effect table of 12 rows, z_over_r [rotor radii], factor; separated by ';',
 /// decimal commas".
 [[nodiscard]] std::string text_of(const DataFacts& data);

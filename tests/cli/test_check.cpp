@@ -145,6 +145,25 @@ TEST_CASE("Keys by their former names are warnings of check and of results") {
     CHECK(solved.err.empty());
 }
 
+TEST_CASE("A problem in space is begun, checked and explained, and no plan is searched for") {
+    const Workspace work;
+    CHECK(work.run("init --space").out == "my_problem.yaml\nhexa370_arm3.yaml\n");
+    const Result checked = work.succeed("check my_problem.yaml hexa370_arm3.yaml");
+    CHECK_THAT(checked.out,
+               Contains("my_problem.yaml: ok\n  hexa370_arm3: 2.56 kg, 3 joints, thrust 4.95 times the weight"));
+    CHECK_THAT(checked.out, Contains("hexa370_arm3.yaml: ok\n  hexa370_arm3: "));
+    const auto robots = work.json("check", work / "my_problem.yaml").at("robots");
+    REQUIRE(robots.size() == 1);
+    CHECK(robots.at(0).at("joints") == 3);
+    CHECK(robots.at(0).at("hover_joints_deg").size() == 3);
+
+    check_rejected(work.run("solve my_problem.yaml"), "plans are not searched for there yet");
+    check_rejected(work.run("check my_problem.yaml --page page.html"), "shows problems in a vertical plane");
+    CHECK_THAT(work.succeed("explain joint_m --of space-problem").out, StartsWith("robot.arm.links[].joint_m\n"));
+    CHECK_THAT(work.succeed("explain torque_ratio_m").out, Contains("--of space-problem"));
+    CHECK_THAT(work.succeed("check --schema space-robot").out, Contains("\"torque_ratio_m\""));
+}
+
 TEST_CASE("A problem is drawn and shown as a page before it is planned") {
     const Workspace work;
     const Result drawn = work.succeed("check", shipped_file("bridge_inspection"), "--picture before.svg");

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "downwash/aeromap/aero_settings.hpp"
+#include "downwash/base/export.hpp"
+#include "downwash/base/key_error.hpp"
+#include "downwash/base/vector3.hpp"
+#include "downwash/problems/problem.hpp"
+#include "downwash/problems/space_goal.hpp"
+#include "downwash/scene/shapes.hpp"
+#include "downwash/simulation/space_robot.hpp"
+#include "downwash/simulation/uncertainty.hpp"
+
+namespace downwash {
+
+/// A box of the world [m]: where the multirotor's centre of mass may be.
+struct SpaceBounds {
+    Vector3 low_m = {}, high_m = {};  ///< low < high in each coordinate
+};
+
+/// Where a flight in space begins.
+struct SpaceStart {
+    Vector3 position_m = {};         ///< of the multirotor's centre of mass, in the world
+    double yaw_rad = 0;              ///< from the world's x to its y
+    std::vector<double> joints_rad;  ///< one for each joint; empty: all zero
+    Vector3 velocity_m_s = {};       ///< in the world
+    /// Of the body axes in the world, a quaternion with its scalar first, of any length but zero; empty: level, with
+    /// that yaw.
+    std::optional<std::array<double, 4>> attitude;
+    Vector3 body_rates_rad_s = {};          ///< in the body frame
+    std::vector<double> joint_rates_rad_s;  ///< one for each joint; empty: all zero
+};
+
+/// What yaw does along a reference.
+enum class YawMode {
+    free,    ///< what goals ask for, by the shortest turn
+    hold,    ///< that of the start
+    along,   ///< the nose points along the way
+    toward,  ///< the nose points to a point
+};
+
+/// Each once, in their order.
+inline constexpr std::array all_yaw_modes{YawMode::free, YawMode::hold, YawMode::along, YawMode::toward};
+
+/// Name as in problem files: "free".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(YawMode mode);
+
+/// Limits of a reference in space: Euclidean over the translations, apart for yaw and for every joint; all > 0.
+struct SpaceMotion {
+    double max_speed_m_s = 1.0;
+    double max_acceleration_m_s2 = 0.5;
+    double max_jerk_m_s3 = 4;                                 ///< see MotionLimits::max_jerk_m_s3
+    double max_yaw_rate_rad_s = 0.7853981633974483;           ///< 45 degrees per second, PX4 MPC_YAWRAUTO_MAX
+    double max_yaw_acceleration_rad_s2 = 1.0471975511965976;  ///< 60 degrees/s2, PX4 MPC_YAWRAUTO_ACC
+    double max_joint_rate_rad_s = 0.7853981633974483;
+    double max_joint_acceleration_rad_s2 = 1.5707963267948966;
+    /// Of the force |a + g| that a point mass needs, over its weight, > 1; empty: any.
+    std::optional<double> max_thrust_ratio;
+    std::optional<double> max_tilt_rate_rad_s;  ///< how fast that force turns; empty: at any rate
+    YawMode yaw = YawMode::free;
+    Vector3 yaw_toward_m = {};  ///< with YawMode::toward
+};
+
+/// A motion planning problem in space, complete in itself.
+struct SpaceProblem {
+    std::string name = "problem";  ///< [A-Za-z0-9_-]{1,64}
+    std::string description;
+    SpaceRobot robot;
+    SpaceBounds bounds;
+    std::vector<Obstacle> obstacles;
+    AeroSettings aero;
+    std::optional<Uncertainty> uncertainty;  ///< empty: everything is nominal
+    SpaceStart start;
+    std::vector<SpaceGoal> goals;  ///< to be reached and held one after the other, one at least
+    bool in_any_order = false;     ///< whether the planner chooses the order of the goals
+    SpaceMotion motion;
+    PlannerSettings planner;
+};
+
+/// Every reason why a problem in space cannot be flown: numbers out of range, a robot that cannot fly, a start outside
+/// the flyable area, a goal that says nothing. Keys are key paths of a problem file. Empty when it is sound.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> space_problem_errors(const SpaceProblem& problem);
+
+/// What can be flown but is likely not meant. @pre space_problem_errors(problem) is empty
+[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> space_problem_warnings(const SpaceProblem& problem);
+
+}  // namespace downwash

@@ -1,0 +1,324 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/base/angles.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/problems/shared_checks.hpp"
+#include "downwash/problems/space_goal_parameters.hpp"
+#include "downwash/problems/space_problem.hpp"
+#include "downwash/problems/space_problem_parameters.hpp"
+#include "downwash/scene/collision_checker.hpp"
+#include "downwash/scene/scene.hpp"
+#include "downwash/simulation/space_robot_parameters.hpp"
+#include "downwash/simulation/space_statics.hpp"
+#include "downwash/simulation/world_parameters.hpp"
+
+namespace downwash {
+namespace {
+
+using Errors = std::vector<KeyError>;
+
+constexpr std::array<const char*, 3> axis_names{"x_m", "y_m", "z_m"};
+
+std::string rounded(double value) {
+    return to_text(value, 4);
+}
+
+double length_of(const Vector3& v) {
+    return std::sqrt(dot(v, v));
+}
+
+Errors reversed_bounds(const SpaceProblem& p) {
+    Errors errors;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        if (p.bounds.low_m[axis] >= p.bounds.high_m[axis]) {
+            errors.push_back(
+                {std::string("environment.bounds.") + axis_names[axis], "is [low, high]: expected low below high"});
+        }
+    }
+    return errors;
+}
+
+/// What shows when obstacles are placed: a mesh without area, a scale that makes it huge.
+Errors unplaceable_obstacles(const SpaceProblem& p) {
+    Errors errors;
+    try {
+        static_cast<void>(Scene(p.obstacles));
+    } catch (const InputError& invalid) {
+        for (const KeyError& error : invalid.errors()) {
+            errors.push_back({"environment." + error.key, error.message});
+        }
+    }
+    return errors;
+}
+
+std::string outside_text(double value, double low, double high) {
+    return "is " + to_text(value) + ", outside the bounds: expected " + to_text(low) + " to " + to_text(high);
+}
+
+Errors start_outside_bounds(const SpaceProblem& p) {
+    Errors errors;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double value = p.start.position_m[axis];
+        if (value < p.bounds.low_m[axis] || value > p.bounds.high_m[axis]) {
+            errors.push_back({std::string("start.") + axis_names[axis],
+                              outside_text(value, p.bounds.low_m[axis], p.bounds.high_m[axis])});
+        }
+    }
+    return errors;
+}
+
+/// @param key of the list   @param given numbers
+Errors wrong_joint_count(const SpaceRobot& robot, std::size_t given, const std::string& key) {
+    const auto joints = static_cast<std::size_t>(robot.joints());
+    if (given == 0 || given == joints) {
+        return {};
+    }
+    return {{key, "has " + std::to_string(given) + (given == 1 ? " number" : " numbers") + ": expected " +
+                      std::to_string(joints) + ", one for each joint of the arm, or no such key"}};
+}
+
+/// Angles beyond the limits of their joints. @param key of the list   @param tolerance_rad by which they may be beyond
+Errors joints_beyond_limits(const SpaceRobot& robot, const std::vector<double>& joints_rad, double tolerance_rad,
+                            const std::string& key) {
+    Errors errors;
+    for (std::size_t i = 0; i < joints_rad.size(); ++i) {
+        const SpaceLinkLimits& link = robot.links[i];
+        if (link.is_limited && (joints_rad[i] < link.lower_limit_rad - tolerance_rad ||
+                                joints_rad[i] > link.upper_limit_rad + tolerance_rad)) {
+            errors.push_back({key, "has " + rounded(joints_rad[i] * degrees_per_radian) + " for joint " +
+                                       std::to_string(i + 1) + ", beyond its limits: expected " +
+                                       rounded(link.lower_limit_rad * degrees_per_radian) + " to " +
+                                       rounded(link.upper_limit_rad * degrees_per_radian)});
+        }
+    }
+    return errors;
+}
+
+/// The joints of a start; zeros where it says nothing.
+std::vector<double> start_joints_rad(const SpaceProblem& p) {
+    return p.start.joints_rad.empty() ? std::vector<double>(p.robot.links.size()) : p.start.joints_rad;
+}
+
+Errors misfit_start(const SpaceProblem& p) {
+    constexpr double rounding_rad = 1e-9;
+    Errors errors = wrong_joint_count(p.robot, p.start.joints_rad.size(), "start.joints_deg");
+    if (errors.empty()) {
+        const std::string key = p.start.joints_rad.empty() ? "start" : "start.joints_deg";
+        append(errors, joints_beyond_limits(p.robot, start_joints_rad(p), rounding_rad, key));
+    }
+    append(errors, wrong_joint_count(p.robot, p.start.joint_rates_rad_s.size(), "start.joint_rates_rad_s"));
+    if (p.start.attitude) {
+        double square = 0;
+        for (const double part : *p.start.attitude) {
+            square += part * part;
+        }
+        if (square == 0) {
+            errors.push_back(
+                {"start.attitude", "has no direction: expected a quaternion [w, x, y, z]; [1, 0, 0, 0] is level"});
+        }
+    }
+    return errors;
+}
+
+/// Of a vehicle that begins to follow a reference, which has limits.
+Errors start_too_fast(const SpaceProblem& p) {
+    Errors errors;
+    const double speed = length_of(p.start.velocity_m_s);
+    if (speed > p.motion.max_speed_m_s) {
+        errors.push_back({"start.velocity_m_s", "makes a start speed of " + rounded(speed) +
+                                                    " m/s: expected at most motion.max_speed_m_s, " +
+                                                    to_text(p.motion.max_speed_m_s)});
+    }
+    for (const double rate : p.start.joint_rates_rad_s) {
+        if (std::abs(rate) > p.motion.max_joint_rate_rad_s) {
+            errors.push_back({"start.joint_rates_rad_s",
+                              "has " + rounded(rate) + ", faster than motion.max_joint_rate_deg_s: expected at most " +
+                                  rounded(p.motion.max_joint_rate_rad_s) + " in size"});
+            break;
+        }
+    }
+    return errors;
+}
+
+/// A vector in the body frame at the start as one in the world.
+Vector3 in_world(const SpaceStart& start, const Vector3& v) {
+    if (!start.attitude) {
+        const double c = std::cos(start.yaw_rad), s = std::sin(start.yaw_rad);
+        return {c * v[0] - s * v[1], s * v[0] + c * v[1], v[2]};
+    }
+    const auto& [w, x, y, z] = *start.attitude;
+    const Vector3 axis{x, y, z};
+    const double square = w * w + dot(axis, axis);
+    return v + (2 / square) * cross(axis, cross(axis, v) + w * v);
+}
+
+Errors start_not_flyable(const SpaceProblem& p) {
+    if (!p.aero.enabled) {
+        return {};
+    }
+    const auto scene = std::make_shared<const Scene>(p.obstacles);
+    const DirectEffect effect(scene, p.aero, p.robot.rotor_radius_m);
+    for (std::size_t k = 0; k < p.robot.plant.rotors.size(); ++k) {
+        const Vector3 hub_m = p.start.position_m + in_world(p.start, p.robot.plant.rotors[k].position_m);
+        if (!effect.is_flyable(hub_m)) {
+            return {{"start", "is outside the flyable area: the disc of rotor " + std::to_string(k + 1) + " is " +
+                                  rounded(disc_clearance_m(*scene, hub_m, p.robot.rotor_radius_m)) +
+                                  " m from an obstacle; expected at least " +
+                                  rounded(p.aero.min_distance_radii * p.robot.rotor_radius_m) +
+                                  " m (aero.min_distance_radii times the rotor radius)"}};
+        }
+    }
+    return {};
+}
+
+Errors unflyable_uncertainty(const SpaceProblem& p) {
+    return p.uncertainty ? uncertainty_errors(*p.uncertainty, uncertain_parts_of(p.robot)) : Errors();
+}
+
+// What the values of a goal leave unclear, kind by kind. The key is that of the kind's group.
+
+Errors directionless(const std::optional<Vector3>& direction, const std::string& key) {
+    if (direction && *direction == Vector3{}) {
+        return {{key + ".direction", "has no direction: expected a vector other than [0, 0, 0], or null"}};
+    }
+    return {};
+}
+
+Errors unclear(const SpaceConfigurationGoal& goal, const SpaceProblem& p, const std::string& key) {
+    if (!goal.x_m && !goal.y_m && !goal.z_m && !goal.yaw_rad && goal.joints_rad.empty()) {
+        return {{key, "is free in every coordinate: expected at least one of x_m, y_m, z_m, yaw_deg or joints_deg"}};
+    }
+    Errors errors = wrong_joint_count(p.robot, goal.joints_rad.size(), key + ".joints_deg");
+    if (errors.empty()) {
+        append(errors, joints_beyond_limits(p.robot, goal.joints_rad, goal.tolerance_rad, key + ".joints_deg"));
+    }
+    const std::array coordinates{goal.x_m, goal.y_m, goal.z_m};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double low = p.bounds.low_m[axis], high = p.bounds.high_m[axis];
+        if (coordinates[axis] &&
+            (*coordinates[axis] < low - goal.tolerance_m || *coordinates[axis] > high + goal.tolerance_m)) {
+            errors.push_back({key + "." + axis_names[axis], outside_text(*coordinates[axis], low, high)});
+        }
+    }
+    return errors;
+}
+
+/// A point that the end effector cannot get to from anywhere within the bounds.
+Errors unreachable(const Vector3& at_m, double tolerance_m, const SpaceProblem& p, const std::string& key) {
+    const double reach_m = std::sqrt(worst_pose(p.robot, [&](const std::vector<double>& joints_rad) {
+                                         const Vector3 end_m = arm_pose(p.robot, joints_rad).end_effector_m;
+                                         return dot(end_m, end_m);
+                                     }).value);
+    Vector3 beyond_m{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        beyond_m[axis] = std::max({p.bounds.low_m[axis] - at_m[axis], at_m[axis] - p.bounds.high_m[axis], 0.0});
+    }
+    const double missing_m = length_of(beyond_m) - reach_m - tolerance_m;
+    if (missing_m <= 0) {
+        return {};
+    }
+    return {{key, "is out of reach: from anywhere within the bounds the end effector, which gets " + rounded(reach_m) +
+                      " m from the multirotor's centre of mass, misses it by " + rounded(missing_m) +
+                      " m; widen environment.bounds or move the goal"}};
+}
+
+Errors unclear(const SpaceEndEffectorGoal& goal, const SpaceProblem& p, const std::string& key) {
+    Errors errors = directionless(goal.direction, key);
+    append(errors, unreachable(goal.position_m, goal.tolerance_m, p, key + ".position_m"));
+    return errors;
+}
+
+Errors unclear(const SpacePoseGoal& goal, const SpaceProblem& p, const std::string& key) {
+    return unreachable(goal.position_m, goal.tolerance_m, p, key + ".position_m");
+}
+
+Errors unclear(const SpaceCameraGoal& goal, const SpaceProblem& p, const std::string& key) {
+    Errors errors = directionless(goal.direction, key);
+    if (goal.nearest_m >= goal.farthest_m) {
+        errors.push_back({key + ".distance_m", "is [nearest, farthest]: expected the nearest below the farthest"});
+    }
+    append(errors, unreachable(goal.target_m, goal.farthest_m, p, key + ".target_m"));
+    return errors;
+}
+
+Errors unclear(const SpaceContactGoal& goal, const SpaceProblem& p, const std::string& key) {
+    const bool is_known = std::any_of(p.obstacles.begin(), p.obstacles.end(),
+                                      [&](const Obstacle& obstacle) { return obstacle.name == goal.obstacle; });
+    if (!goal.obstacle.empty() && is_known) {
+        return {};
+    }
+    std::vector<std::string_view> names;
+    for (const Obstacle& obstacle : p.obstacles) {
+        if (!obstacle.name.empty()) {
+            names.push_back(obstacle.name);
+        }
+    }
+    return {
+        {key + ".obstacle", "is '" + excerpt(goal.obstacle) + "', and no obstacle has that name: expected " +
+                                (names.empty() ? "the name of an obstacle, and none has one" : joined_names(names))}};
+}
+
+Errors missing_goals(const SpaceProblem& p) {
+    if (p.goals.empty()) {
+        return {{"goal", "is empty: expected one goal at least"}};
+    }
+    if (p.goals.size() > max_goals) {
+        return {{"goal",
+                 "has " + std::to_string(p.goals.size()) + " goals: expected at most " + std::to_string(max_goals)}};
+    }
+    return {};
+}
+
+Errors unclear_goals(const SpaceProblem& p) {
+    Errors errors;
+    for_each_goal(p, [&](const SpaceGoal& goal, const std::string& key) {
+        append(errors, std::visit([&](const auto& kind) { return unclear(kind, p, key); }, goal.kind));
+    });
+    return errors;
+}
+
+const std::array<Check<SpaceProblem>, 13> checks{{
+    {{"environment.bounds"}, reversed_bounds},
+    {{"environment.obstacles"}, repeated_names<SpaceProblem>},
+    {{"environment.obstacles"}, shapeless_cylinders<SpaceProblem>},
+    {{"environment.obstacles"}, unplaceable_obstacles},
+    {{"aero"}, incomplete_effects<SpaceProblem>},
+    {{"environment.bounds", "start"}, start_outside_bounds},
+    {{"start", "robot.arm"}, misfit_start},
+    {{"start", "motion"}, start_too_fast},
+    {{"environment.obstacles", "start", "robot.rotors", "aero"}, start_not_flyable},
+    {{"uncertainty", "robot.uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
+    {{"planner.objective"}, weightless_objective<SpaceProblem>},
+    {{"goal"}, missing_goals},
+    {{"goal", "environment.bounds", "environment.obstacles", "robot.arm"}, unclear_goals},
+}};
+
+}  // namespace
+
+Errors further_space_problem_errors(const SpaceProblem& problem, WrongKeys wrong) {
+    Errors errors = value_errors(space_problem_parameters(), problem, "", wrong);
+    append(errors, further_space_robot_errors(problem.robot, wrong, "robot."));
+    append(errors, run_checks(std::span<const Check<SpaceProblem>>(checks), problem, "", wrong));
+    return errors;
+}
+
+Errors space_problem_errors(const SpaceProblem& problem) {
+    return further_space_problem_errors(problem, {});
+}
+
+Errors space_problem_warnings(const SpaceProblem& problem) {
+    Errors warnings = space_robot_warnings(problem.robot);
+    for (KeyError& warning : warnings) {
+        warning.key.insert(0, "robot.");
+    }
+    append(warnings, no_margin(problem));
+    return warnings;
+}
+
+}  // namespace downwash

@@ -1,0 +1,181 @@
+#include "../support/test_files.hpp"
+#include "edits.hpp"
+#include "space_files.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+const Edit robot_edits[] = {
+    {"mass_kg: 2\n", "mass_kg: 0\n", "4:12: multirotor.mass_kg is 0: expected a number in kg from 0.0001 to 10000"},
+    {"[0.02, 0.03, 0.04]", "[0.02, 0.03]",
+     "5:18: multirotor.inertia_kg_m2 has 2 elements: expected [xx, yy, zz] or the rows of a 3 x 3 matrix in kg m2 from "
+     "1e-10 to 100000"},
+    {"[0.02, 0.03, 0.04]", "0.02",
+     "5:18: multirotor.inertia_kg_m2 is '0.02': expected [xx, yy, zz] or the rows of a 3 x 3 matrix in kg m2 from "
+     "1e-10 to 100000"},
+    {"[0.02, 0.03, 0.04]", "[0.02, 0.03, 0.06]",
+     "5:18: multirotor.inertia_kg_m2 has the principal moments 0.02, 0.03 and 0.06 kg m2, which no body has: expected "
+     "the largest to be at most the sum of the others, 0.05"},
+    {"[0.02, 0.03, 0.04]", "[[0.02, 0, 0], [0.01, 0.03, 0], [0, 0, 0.04]]",
+     "5:18: multirotor.inertia_kg_m2 is no symmetric matrix: expected the same number in row 2, column 1 as in row 1, "
+     "column 2, the negative product of inertia of these axes"},
+    {"[0.02, 0.03, 0.04]", "[[0.02, 0, 0], [0, 0.03, 0]]",
+     "5:18: multirotor.inertia_kg_m2 has 2 rows: expected [xx, yy, zz] or the rows of a 3 x 3 matrix in kg m2 from "
+     "1e-10 to 100000"},
+    {"[0.02, 0.03, 0.04]", "[2, 3, 4]",
+     "5:18: multirotor.inertia_kg_m2 is more than its whole mass at the outermost rotor tips would have (0.3246 kg "
+     "m2)"},
+    {"spin: [1, -1, 1, -1]", "spin: [1, -1, 1]",
+     "11:9: rotors.spin has 3 numbers: expected 4, one for each rotor of positions_m"},
+    {"spin: [1, -1, 1, -1]", "spin: [1, 0.5, 1, -1]", "11:9: rotors.spin has 0.5: expected 1 or -1"},
+    {"spin: [1, -1, 1, -1]", "spin: [1, 1, 1, 1]",
+     "11:9: rotors.spin gives torques that cannot turn the vehicle in yaw without turning it in roll or pitch, or "
+     "changing its thrust: expected rotors of both spins around the vehicle, with a torque_ratio_m above 0, or axes "
+     "that are tilted sideways"},
+    {"torque_ratio_m: 0.02", "torque_ratio_m: 0.02\n  axes: [[0, 0, 1]]",
+     "13:9: rotors.axes has 1 direction: expected 4, one for each rotor of positions_m"},
+    {"torque_ratio_m: 0.02", "torque_ratio_m: 0.02\n  axes: [[0, 0, 1], [0, 0, 0], [0, 0, 1], [0, 0, 1]]",
+     "13:9: rotors.axes of rotor 2 has no direction: expected a vector other than [0, 0, 0]"},
+    {"torque_ratio_m: 0.02", "torque_ratio_m: [0.02, 0.02]",
+     "12:19: rotors.torque_ratio_m has 2 numbers: expected 4, one for each rotor of positions_m"},
+    {"[[0.2, 0.2, 0], [-0.2, 0.2, 0], [-0.2, -0.2, 0], [0.2, -0.2, 0]]",
+     "[[0.2, 0.2, 0], [-0.2, -0.2, 0], [0.1, 0.1, 0], [-0.1, -0.1, 0]]",
+     "10:16: rotors.positions_m gives the rotors no lever in roll or in pitch: expected hubs that do not lie on one "
+     "line"},
+    {"[[0.2, 0.2, 0], [-0.2, 0.2, 0], [-0.2, -0.2, 0], [0.2, -0.2, 0]]",
+     "[[0.5, 0.2, 0], [0.1, 0.2, 0], [0.1, -0.2, 0], [0.5, -0.2, 0]]",
+     "10:16: rotors.positions_m would need rotor 1 to pull downwards in a hover: expected the multirotor's centre of "
+     "mass, [0, 0, 0], between the hubs"},
+    {"max_thrust_n: 12", "max_thrust_n: 5",
+     "13:17: rotors.max_thrust_n lifts 20 N with 4 rotors, which cannot carry the weight of 22.56 N, arm included: "
+     "2.555 N are missing"},
+    {"max_thrust_n: 12", "max_thrust_n: 12\n  min_thrust_n: 6",
+     "14:17: rotors.min_thrust_n lifts 24 N with 4 rotors, more than the weight of 22.56 N: the vehicle could not "
+     "descend"},
+    {"max_thrust_n: 12", "max_thrust_n: 12\n  min_thrust_n: [0, 0, 13, 0]",
+     "14:17: rotors.min_thrust_n is 13 for rotor 3: expected less than max_thrust_n, which is 12"},
+    {"max_thrust_n: 12", "max_thrust_n: 12\n  time_constant_s: 0.001",
+     "14:20: rotors.time_constant_s is 0.001: expected 0 for no lag, or at least half a control tick, 0.005 s"},
+    {"axis: [0, 1, 0]", "axis: [0, 0, 0]",
+     "17:38: arm.links[0].axis has no direction: expected a vector other than [0, 0, 0]"},
+    {"limits_deg: [-120, 120]", "limits_deg: [120, -120]",
+     "18:59: arm.links[0].limits_deg is [lower, upper]: expected the lower limit below the upper one, or both the "
+     "same"},
+    {"max_torque_nm: 2}", "max_torque_nm: 0.5}",
+     "18:87: arm.links[0].max_torque_nm is 0.5, too little to hold the arm with joints at [0, 0] deg: expected at "
+     "least 0.5394 Nm"},
+    {"[[0.0001, 0, 0], [0, 0.001, 0.00005], [0, 0.00005, 0.001]]",
+     "[[0.0001, 0.001, 0], [0.001, 0.001, 0], [0, 0, 0.001]]",
+     "20:23: arm.links[1].inertia_kg_m2 has the principal moments -0.0005466, 0.001 and 0.001647 kg m2: expected three "
+     "above 0; the products of inertia are too large"},
+    {"capsule: {radius_m: 0.02, to_m: [0.3, 0, 0]}", "capsule: {radius_m: 0, to_m: [0.3, 0, 0]}",
+     "21:35: arm.links[1].body[0].capsule.radius_m is 0: expected a number in m from 1e-06 to 100000"},
+    {"  attitude: {kp: 3,", "  delay_s: 0.3\n  rate_hz: 1000\n  attitude: {kp: 3,",
+     "27:12: controller.delay_s is 0.3: expected at most 64 control ticks, 0.064 s"},
+    {"position: {kp: 2, kd: 2.4}", "type: lqr\n  position: {kp: 2, kd: 2.4}",
+     "24:9: controller.type is 'lqr': expected one of model-inversion or px4-cascade"},
+    {"yaw_rate_kp: 5", "yaw_rate_kp: -5",
+     "27:60: controller.attitude.yaw_rate_kp is -5: expected a number from 0 to 10000"},
+};
+
+const Edit problem_edits[] = {
+    {"y_m: [-5, 5]", "y_m: [5, -5]", "5:31: environment.bounds.y_m is [low, high]: expected low below high"},
+    {"y_m: 1, z_m: 2, yaw", "y_m: 8, z_m: 2, yaw", "9:23: start.y_m is 8, outside the bounds: expected -5 to 5"},
+    {"joints_deg: [20, -10]", "joints_deg: [20]",
+     "9:59: start.joints_deg has 1 number: expected 2, one for each joint of the arm, or no such key"},
+    {"joints_deg: [20, -10]", "joints_deg: [20, 95]",
+     "9:59: start.joints_deg has 95 for joint 2, beyond its limits: expected -90 to 90"},
+    {"joints_deg: [20, -10]", "attitude: [0, 0, 0, 0]",
+     "9:57: start.attitude has no direction: expected a quaternion [w, x, y, z]; [1, 0, 0, 0] is level"},
+    {"joints_deg: [20, -10]", "velocity_m_s: [3, 0, 4]",
+     "9:61: start.velocity_m_s makes a start speed of 5 m/s: expected at most motion.max_speed_m_s, 2"},
+    {"joints_deg: [20, -10]", "joint_rates_rad_s: [0, 2]",
+     "9:66: start.joint_rates_rad_s has 2, faster than motion.max_joint_rate_deg_s: expected at most 0.7854 in size"},
+    {"direction: [0, 0, 1]", "direction: [0, 0, 0]",
+     "11:73: goal.end_effector.direction has no direction: expected a vector other than [0, 0, 0], or null"},
+    {"position_m: [3, -2, 2.5]", "position_m: [3, -2, 9]",
+     "11:30: goal.end_effector.position_m is out of reach: from anywhere within the bounds the end effector, which "
+     "gets 0.55 m from the multirotor's centre of mass, misses it by 3.35 m; widen environment.bounds or move the "
+     "goal"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}", "configuration: {}",
+     "11:3: goal.configuration is free in every coordinate: expected at least one of x_m, y_m, z_m, yaw_deg or "
+     "joints_deg"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
+     "configuration: {joints_deg: [1, 2, 3]}",
+     "11:31: goal.configuration.joints_deg has 3 numbers: expected 2, one for each joint of the arm, or no such key"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}", "configuration: {y_m: 7}",
+     "11:24: goal.configuration.y_m is 7, outside the bounds: expected -5 to 5"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
+     "camera: {target_m: [3, 0, 2], distance_m: [2, 1]}",
+     "11:45: goal.camera.distance_m is [nearest, farthest]: expected the nearest below the farthest"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
+     "contact: {obstacle: post, force_n: 5}",
+     "11:23: goal.contact.obstacle is 'post', and no obstacle has that name: expected ground or pole"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
+     "pose: {position_m: [3, -2, 2.5]}",
+     "11:3: goal.pose.rpy_deg is missing: expected [roll, pitch, yaw] in deg from -360 to 360"},
+    {"max_speed_m_s: 2", "yaw: sideways",
+     "13:15: motion.yaw is 'sideways': expected one of free, hold, along or toward"},
+    {"max_speed_m_s: 2", "yaw: hold, yaw_toward_m: [0, 0, 0]",
+     "13:21: motion.yaw_toward_m has a meaning only with yaw: toward: remove it"},
+    {"{name: pole, ", "{name: ground, ",
+     "8:14: environment.obstacles[1].name is 'ground' like an obstacle before it: expected a name used once"},
+};
+
+}  // namespace
+
+TEST_CASE("a malformed robot in space is an error in its own file") {
+    check(robot_edits, "robot.yaml", [](auto from, auto to) {
+        return space_errors(TestFolder(), good_space_problem, edited(good_space_robot, from, to));
+    });
+}
+
+TEST_CASE("a malformed problem in space is an error at its key") {
+    check(problem_edits, "problem.yaml", [](auto from, auto to) {
+        return space_errors(TestFolder(), edited(good_space_problem, from, to), good_space_robot);
+    });
+}
+
+TEST_CASE("keys of a robot in space and of one in a vertical plane are not mixed") {
+    const TestFolder folder;
+    const std::string mixed =
+        edited(good_space_robot, "  end_effector_m: [0.3, 0, 0]", "  end_effector_m: [0.3, 0, 0]\n  length_m: 0.5");
+    CHECK(space_errors(folder, good_space_problem, mixed) ==
+          "robot.yaml:5:3: multirotor.inertia_kg_m2 is a key of a robot in space, and arm.length_m in line 23 one of a "
+          "robot in a vertical plane: expected keys of one kind");
+    CHECK(
+        space_errors(folder, edited(good_space_problem, "bounds: {x_m", "plane: {heading_deg: 3}\n  bounds: {x_m"),
+                     good_space_robot) ==
+        "problem.yaml:6:26: environment.bounds.y_m is a key of a problem in space, and environment.plane in line 5 one "
+        "of a problem in a vertical plane: expected keys of one kind");
+}
+
+TEST_CASE("robots and problems of a vertical plane and of space do not fit each other") {
+    const TestFolder folder;
+    CHECK(space_errors(folder, good_space_problem, good_robot) ==
+          "robot.yaml:5:3: multirotor.pitch_inertia_kg_m2 is a key of a robot in a vertical plane, and this is one in "
+          "space: expected a robot with multirotor.inertia_kg_m2 and arm.links, or a problem without "
+          "environment.bounds.y_m");
+    CHECK(folder.errors_of(good_problem, good_space_robot) ==
+          "robot.yaml:5:3: multirotor.inertia_kg_m2 is a key of a robot in space, and this is one in a vertical plane: "
+          "expected a robot with multirotor.pitch_inertia_kg_m2, or a problem in space, which environment.bounds.y_m "
+          "makes it");
+}
+
+TEST_CASE("what plans in a vertical plane says of a problem in space that plans are not searched for there") {
+    const TestFolder folder;
+    CHECK(
+        folder.errors_of(good_space_problem, good_space_robot) ==
+        "problem.yaml:5:26: environment.bounds.y_m makes this a problem in space, and plans are not searched for there "
+        "yet: `downwash check` reads it, and `downwash execute --plan` flies a given reference; without y_m it is a "
+        "problem in a vertical plane");
+    CHECK(is_space_problem_file(folder / "problem.yaml"));
+    CHECK(is_space_robot_file(folder / "robot.yaml"));
+    folder.write("problem.yaml", good_problem);
+    folder.write("robot.yaml", good_robot);
+    CHECK_FALSE(is_space_problem_file(folder / "problem.yaml"));
+    CHECK_FALSE(is_space_robot_file(folder / "robot.yaml"));
+    CHECK_FALSE(is_space_robot_file(folder / "missing.yaml"));
+}

@@ -1,0 +1,283 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "downwash/dynamics/plant_model.hpp"
+#include "downwash/problems/key_reference.hpp"
+#include "downwash/problems/space_problem_parameters.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
+#include "downwash/problems/space_problem_writer.hpp"
+#include "downwash/simulation/space_robot_facts.hpp"
+#include "space_files.hpp"
+
+using namespace downwash;
+using namespace downwash::test;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double degree = std::numbers::pi / 180;
+
+SpaceRobot shipped(const char* name) {
+    return read_space_robot(fs::path(DOWNWASH_PROBLEMS) / "robots" / (std::string(name) + ".yaml"));
+}
+
+fs::path dynobench(const char* name) {
+    return fs::path(DOWNWASH_PROBLEMS) / "../bench/dynobench" / name;
+}
+
+double hover_n(const SpaceRobot& robot) {
+    return robot.mass_kg() * standard_gravity_m_s2 / static_cast<double>(robot.plant.rotors.size());
+}
+
+/// What a problem becomes when it is written and read again.
+SpaceProblem read_again(const TestFolder& folder, const SpaceProblem& problem) {
+    folder.write("again.yaml", effective_yaml(problem, folder / "."));
+    return read_space_problem(folder / "again.yaml");
+}
+
+}  // namespace
+
+TEST_CASE("the files of a problem in space and of its robot give their values") {
+    const TestFolder folder;
+    const SpaceProblem problem = read_good_space_problem(folder);
+    CHECK(problem.bounds.low_m == Vector3{-6, -5, 0.5});
+    CHECK(problem.bounds.high_m == Vector3{6, 5, 5});
+    CHECK(problem.start.position_m == Vector3{-4, 1, 2});
+    CHECK(problem.start.yaw_rad == Approx(30 * degree));
+    REQUIRE(problem.start.joints_rad.size() == 2);
+    CHECK(problem.start.joints_rad[1] == Approx(-10 * degree));
+    REQUIRE(problem.goals.size() == 1);
+    const auto& goal = std::get<SpaceEndEffectorGoal>(problem.goals[0].kind);
+    CHECK(goal.position_m == Vector3{3, -2, 2.5});
+    CHECK(*goal.direction == Vector3{0, 0, 1});
+    CHECK(problem.motion.max_speed_m_s == 2);
+    CHECK(problem.motion.yaw == YawMode::free);
+
+    const SpaceRobot& robot = problem.robot;
+    CHECK(robot.joints() == 2);
+    CHECK(robot.mass_kg() == Approx(2.3));
+    CHECK(robot.plant.multirotor.inertia_kg_m2 == Matrix3{{{0.02, 0, 0}, {0, 0.03, 0}, {0, 0, 0.04}}});
+    CHECK(robot.plant.links[1].body.inertia_kg_m2[1][2] == 0.00005);
+    CHECK(robot.plant.links[1].axis == Vector3{0, 0, 1});
+    CHECK(robot.links[0].upper_limit_rad == Approx(120 * degree));
+    CHECK(robot.plant.rotors[1].axis == Vector3{0, 0, 1});
+    CHECK(robot.plant.rotors[1].spin == -1);
+    CHECK(robot.plant.rotors[3].drag_torque_m == 0.02);  // one number for all
+    CHECK(robot.min_thrust_n == std::vector<double>(4, 0));
+    CHECK(robot.max_thrust_n == std::vector<double>(4, 12));
+    REQUIRE(robot.links[1].body.size() == 1);
+    CHECK(std::get<Capsule>(robot.links[1].body[0].shape).to_m == Vector3{0.3, 0, 0});
+    CHECK(std::get<SpaceInversion>(robot.controller.law).height.kp_1_s2 == 12);
+}
+
+TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is read as it was written") {
+    const TestFolder folder;
+    SpaceProblem problem = read_good_space_problem(folder);
+    const SpaceGoal configuration{SpaceConfigurationGoal{{}, 1.0 / 3, {}, 0.1, {0.1, -0.2}, 0.05, 0.03}, 2, {}};
+    const SpaceGoal point{SpaceEndEffectorGoal{{1.0 / 7, 2, 3}, 0.02, Vector3{0, 0.1, 1}, 0.3}, 3, {}};
+    const SpaceGoal pose{SpacePoseGoal{{1, 1, 2}, {0.1, 0.2, 0.3}, 0.2, 0.1}, 5, {}};
+    const SpaceGoal camera{SpaceCameraGoal{{0, 0, 3}, 0.5, 1.5, Vector3{1, 0, 0}, 0.4, 0.1, false}, 5, {}};
+    const SpaceGoal contact{
+        SpaceContactGoal{"pole", 4, TouchingPart::frame, Vector3{4, 2, 2}, 0.2, 0.5, 0.2, 0.05}, 6, {}};
+    const SpaceGoal choice{{}, 5, {point, camera}};
+    for (const bool in_any_order : {false, true}) {
+        problem.goals = {configuration, point, pose, camera, contact, choice};
+        problem.in_any_order = in_any_order;
+        problem.start.attitude = {1, 0, 0, 0.2};
+        problem.motion.yaw = YawMode::toward;
+        problem.motion.yaw_toward_m = {1, 2, 1.0 / 3};
+        const SpaceProblem again = read_again(folder, problem);
+        CHECK(again.in_any_order == in_any_order);
+        REQUIRE(again.goals.size() == 6);
+        const auto& free = std::get<SpaceConfigurationGoal>(again.goals[0].kind);
+        CHECK_FALSE(free.x_m.has_value());
+        CHECK(*free.y_m == 1.0 / 3);
+        CHECK(free.joints_rad == std::vector{0.1, -0.2});
+        CHECK(std::get<SpacePoseGoal>(again.goals[2].kind).rpy_rad == Vector3{0.1, 0.2, 0.3});
+        CHECK_FALSE(std::get<SpaceCameraGoal>(again.goals[3].kind).sees);
+        CHECK(*std::get<SpaceContactGoal>(again.goals[4].kind).position_m == Vector3{4, 2, 2});
+        REQUIRE(again.goals[5].any_of.size() == 2);
+        CHECK(std::get<SpaceEndEffectorGoal>(again.goals[5].any_of[0].kind).position_m[0] == 1.0 / 7);
+        CHECK(again.motion.yaw_toward_m[2] == 1.0 / 3);
+        CHECK(effective_yaml(again, folder / ".") == effective_yaml(problem, folder / "."));
+        CHECK(problem_sha256(again) == problem_sha256(problem));
+    }
+    const std::string before = problem_sha256(problem);
+    problem.robot.links[1].max_torque_nm *= 1.000001;
+    CHECK(problem_sha256(problem) != before);
+}
+
+TEST_CASE("a robot in space is read as it was written") {
+    const TestFolder folder;
+    SpaceRobot robot = read_good_space_problem(folder).robot;
+    robot.plant.rotors[0].axis = {0.1, 0, 1};
+    robot.plant.rotors[2].drag_torque_m = 0.019;
+    robot.min_thrust_n = {0, 0.1, 0.2, 1.0 / 3};
+    robot.plant.links[0].viscous_friction_nm_s = 0.01;
+    robot.plant.links[0].drag.quadratic_n_s2_m2 = 0.02;
+    robot.plant.wash = WashParameters{0.9};
+    robot.links[0].is_limited = false;
+    robot.links[0].lower_limit_rad = robot.links[0].upper_limit_rad = 0;
+    robot.controller.law =
+        Px4Cascade{1, 1, {1, 2, 3, 4}, {2, 3, 4, 5}, {3, 4, 5, 6}, 6, 0.3, {4, 5, 6, 7}, {5, 6, 7, 8}};
+    folder.write("written.yaml", robot_yaml(robot));
+    const SpaceRobot again = read_space_robot(folder / "written.yaml");
+    CHECK(robot_yaml(again) == robot_yaml(robot));
+    CHECK(again.plant.rotors[0].axis == Vector3{0.1, 0, 1});
+    CHECK(again.plant.rotors[2].drag_torque_m == 0.019);
+    CHECK(again.min_thrust_n == robot.min_thrust_n);
+    CHECK(again.plant.wash == robot.plant.wash);
+    CHECK_FALSE(again.links[0].is_limited);
+    CHECK(std::get<Px4Cascade>(again.controller.law).yaw_rate.ki_1_s3 == 7);
+}
+
+TEST_CASE("robots of published numbers have their masses and hover with the thrusts that follow by hand") {
+    const SpaceRobot hexa = shipped("hexa370_arm3");
+    CHECK(hexa.mass_kg() == Approx(1.9828 + 6 * 0.005 + 0.27973 + 0.12284 + 0.11474 + 0.030904).margin(1e-9));
+    CHECK(hover_n(hexa) == Approx(4.1858).epsilon(1e-4));  // 25.115 N on six rotors
+    CHECK(space_robot_facts(hexa).thrust_to_weight == Approx(124.2 / 25.115).epsilon(1e-4));
+
+    const SpaceRobot snu = shipped("snu_f550_arm2");
+    CHECK(snu.mass_kg() == Approx(2.153 + 0.1852 + 0.0821 + 0.05723).margin(1e-9));
+    CHECK(hover_n(snu) == Approx(4.0494).epsilon(1e-4));  // 24.296 N on six rotors
+    // Both links upright: joint, 0.25 m and 0.30 m.
+    CHECK(space_robot_facts(snu).reach_m > 0.05 + 0.25 + 0.3);
+
+    const SpaceRobot neo = shipped("neo11_arm5");
+    CHECK(neo.mass_kg() == Approx(3.42 + 6 * 0.005 + 0.667).margin(1e-4));
+    CHECK(hover_n(neo) == Approx(6.729).epsilon(1e-4));  // 40.374 N on six rotors, tilt aside
+    for (const SpaceRotor& rotor : neo.plant.rotors) {
+        CHECK(std::acos(rotor.axis[2] / std::sqrt(dot(rotor.axis, rotor.axis))) == Approx(5 * degree).epsilon(1e-4));
+        // Tilt and drag turn the vehicle the same way in yaw.
+        const double by_tilt = cross(rotor.position_m, rotor.axis)[2];
+        CHECK(by_tilt * rotor.spin < 0);
+    }
+}
+
+TEST_CASE("ARS-LRM in space is the planar robot with what motion out of its plane needs") {
+    const SpaceRobot space = shipped("ars_lrm_space");
+    const Robot plane = read_robot(fs::path(DOWNWASH_PROBLEMS) / "robots/ars_lrm.yaml");
+    CHECK(space.mass_kg() == plane.mass_kg());
+    CHECK(space.plant.multirotor.inertia_kg_m2[1][1] == plane.multirotor.pitch_inertia_kg_m2);
+    CHECK(space.plant.links[0].body.inertia_kg_m2[1][1] == plane.arm.inertia_kg_m2);
+    CHECK(space.plant.links[0].center_of_mass_m == Vector3{plane.arm.center_of_mass_m, 0, 0});
+    CHECK(space.plant.links[0].drag.quadratic_n_s2_m2 == plane.arm.drag.quadratic_n_s2_m2);
+    CHECK(space.plant.end_effector_m == Vector3{plane.arm.length_m, 0, 0});
+    CHECK(space.plant.drag.linear_n_s_m == plane.multirotor.drag.linear_n_s_m);
+    CHECK(space.plant.time_constant_s == plane.rotors.time_constant_s);
+    CHECK(space.plant.power_coefficient_w_n1p5 == plane.rotors.power_coefficient_w_n1p5);
+    CHECK(space.controller.delay_s == plane.controller.delay_s);
+    REQUIRE(space.plant.rotors.size() == plane.rotors.positions_m.size());
+    for (std::size_t k = 0; k < space.plant.rotors.size(); ++k) {
+        CHECK(space.plant.rotors[k].position_m == plane.rotors.positions_m[k]);
+        CHECK(space.max_thrust_n[k] == plane.rotors.max_thrust_n);
+    }
+}
+
+TEST_CASE("rotors of dynobench's quadrotors have its mixer") {
+    const double g = 9.81;
+    const SpaceRobot v0 = read_space_robot(dynobench("quadrotor_v0.yaml"));
+    CHECK(v0.mass_kg() == 0.034);
+    const double a = 0.046 / std::sqrt(2.0);
+    const double roll[] = {-a, -a, a, a}, pitch[] = {-a, a, a, -a}, yaw[] = {-0.006, 0.006, -0.006, 0.006};
+    for (std::size_t k = 0; k < 4; ++k) {
+        const SpaceRotor& rotor = v0.plant.rotors[k];
+        const Vector3 lever = cross(rotor.position_m, rotor.axis);
+        CHECK(lever[0] == Approx(roll[k]).epsilon(1e-8));
+        CHECK(lever[1] == Approx(pitch[k]).epsilon(1e-8));
+        CHECK(-rotor.spin * rotor.drag_torque_m == Approx(yaw[k]));
+        CHECK(v0.max_thrust_n[k] == Approx(1.3 * 0.034 * g / 4));
+    }
+    const SpaceRobot v1 = read_space_robot(dynobench("quadrotor_v1.yaml"));
+    double most_n = 0, most_nm = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        most_n += v1.max_thrust_n[k];
+        most_nm += std::max(0.0, v1.plant.rotors[k].position_m[1]) * v1.max_thrust_n[k];
+    }
+    CHECK(most_n == Approx(1.5 * 1 * g));
+    CHECK(most_nm == Approx(40).epsilon(1e-5));
+    CHECK(most_nm <= 40);  // none of its torques is beyond the model's
+}
+
+TEST_CASE("every shipped robot in space is read as it was written") {
+    const TestFolder folder;
+    for (const fs::path& file : {fs::path(DOWNWASH_PROBLEMS) / "robots/hexa370_arm3.yaml",
+                                 fs::path(DOWNWASH_PROBLEMS) / "robots/snu_f550_arm2.yaml",
+                                 fs::path(DOWNWASH_PROBLEMS) / "robots/neo11_arm5.yaml",
+                                 fs::path(DOWNWASH_PROBLEMS) / "robots/ars_lrm_space.yaml",
+                                 dynobench("quadrotor_v0.yaml"), dynobench("quadrotor_v1.yaml")}) {
+        CAPTURE(file);
+        CHECK(is_space_robot_file(file));
+        std::vector<std::string> warnings;
+        const SpaceRobot robot =
+            read_space_robot(file, [&](const LocatedError& warning) { warnings.push_back(to_text(warning)); });
+        CHECK(warnings.empty());
+        folder.write("written.yaml", robot_yaml(robot));
+        CHECK(robot_yaml(read_space_robot(folder / "written.yaml")) == robot_yaml(robot));
+    }
+}
+
+TEST_CASE("the problem in space to start from is sound") {
+    const TestFolder folder;
+    for (const char* name : {"templates/first_space_problem.yaml", "robots/hexa370_arm3.yaml"}) {
+        fs::copy_file(fs::path(DOWNWASH_PROBLEMS) / name, folder / fs::path(name).filename().string(),
+                      fs::copy_options::overwrite_existing);
+    }
+    std::vector<std::string> warnings;
+    const SpaceProblem problem =
+        read_space_problem(folder / "first_space_problem.yaml", {},
+                           [&](const LocatedError& warning) { warnings.push_back(to_text(warning)); });
+    CHECK(problem.robot.name == "hexa370_arm3");
+    CHECK(warnings.empty());
+}
+
+TEST_CASE("the schemas of files in space have every key of their tables and no other") {
+    for (const FileKind kind : {FileKind::space_problem, FileKind::space_robot}) {
+        const nlohmann::json schema = nlohmann::json::parse(json_schema(kind));
+        std::size_t found = 0;
+        for (const KeyReference& key : key_reference(kind)) {
+            // Elements of lists stand in the form that is an array.
+            const nlohmann::json* at = &schema;
+            std::string path = key.info.path;
+            CAPTURE(path);
+            for (std::size_t from = 0; at != nullptr && from <= path.size();) {
+                const std::size_t dot = std::min(path.find('.', from), path.size());
+                std::string name = path.substr(from, dot - from);
+                const bool is_list = name.ends_with("[]");
+                name = is_list ? name.substr(0, name.size() - 2) : name;
+                const nlohmann::json* next = nullptr;
+                const auto look_in = [&](const nlohmann::json& form) {
+                    if (form.contains("properties") && form["properties"].contains(name)) {
+                        next = &form["properties"][name];
+                    }
+                };
+                look_in(*at);
+                if (next == nullptr && at->contains("anyOf")) {
+                    for (const auto& form : (*at)["anyOf"]) {
+                        look_in(form);
+                    }
+                }
+                if (next != nullptr && is_list) {
+                    const nlohmann::json* items = next->contains("items") ? &(*next)["items"] : nullptr;
+                    if (items == nullptr && next->contains("anyOf")) {
+                        for (const auto& form : (*next)["anyOf"]) {
+                            items = form.contains("items") ? &form["items"] : items;
+                        }
+                    }
+                    next = items;
+                }
+                at = next;
+                from = dot + 1;
+            }
+            CHECK(at != nullptr);
+            found += at != nullptr ? 1 : 0;
+        }
+        CHECK(found > 100);
+    }
+    CHECK(json_schema(FileKind::space_robot).find("pitch_inertia_kg_m2") == std::string::npos);
+    CHECK(json_schema(FileKind::space_problem).find("\"plane\"") == std::string::npos);
+}
