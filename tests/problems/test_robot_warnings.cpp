@@ -107,9 +107,11 @@ TEST_CASE("limits of the arm in radians are warned of") {
 
 TEST_CASE("places and inertias that do not fit the robot's size are warned of") {
     Robot robot = shipped();
-    robot.rotors.positions_m[1] = {3.2, -3.2, 0.06};
-    CHECK_THAT(warnings_of(robot, "rotors.positions_m").back(),
-               StartsWith("puts rotor 2 4.525 m from the centre of mass, and multirotor.body reaches 0.7354 m: "));
+    for (Vector3& hub_m : robot.rotors.positions_m) {
+        hub_m = {10 * hub_m[0], 10 * hub_m[1], hub_m[2]};
+    }
+    CHECK_THAT(warnings_of(robot, "rotors.positions_m").at(0),
+               StartsWith("puts rotor 1 4.525 m from the centre of mass, and multirotor.body reaches 0.7354 m: "));
     robot = shipped();
     robot.multirotor.pitch_inertia_kg_m2 = 0.002;
     CHECK_THAT(warnings_of(robot, "multirotor.pitch_inertia_kg_m2").at(0), Contains("0.02108 m from the axis"));

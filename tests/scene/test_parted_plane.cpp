@@ -161,7 +161,7 @@ TEST_CASE("A wall up to the edge of the bounds closes the plane, and so does one
         const std::vector<Obstacle> wall{box({1, 40, top_m}, {0, 0, 0.5 * top_m})};
         return !cut_off_regions(Scene(wall), {}, robot(), wide, -12, 3, std::span(&region, 1)).empty();
     };
-    // The core reaches 0.107 m below a centre of mass, which may be 5 cm above the bounds.
+    // The core reaches 0.105 m below a centre of mass, which may be 5 cm above the bounds.
     CHECK(closes(11.0));
     CHECK(closes(10.975));  // half a square more than these
     CHECK_FALSE(closes(10.94));
