@@ -56,7 +56,7 @@ std::vector<std::string> export_warnings(const RunRecord& run, const ExportForma
             "of `--format csv` or `ros`");
     }
     if (const double range_rad = arm_range_rad(run); range_rad > small_arm_range_rad) {
-        warnings.push_back("the plan moves the arm by " + to_text(range_rad * degrees_per_radian, 2) +
+        warnings.push_back("the plan moves the arm by " + to_fixed_text(range_rad * degrees_per_radian, 0) +
                            " degrees, and a mission has no arm: `--format csv` and `ros` have");
     }
     if (!has_certificate(run)) {
