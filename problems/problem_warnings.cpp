@@ -12,6 +12,7 @@
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/shared_checks.hpp"
+#include "downwash/problems/slip_warnings.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/loop_margins.hpp"
 #include "downwash/simulation/robot_facts.hpp"
@@ -234,6 +235,7 @@ std::vector<KeyError> robot_remarks(const Robot& robot) {
         const std::vector<KeyError> found = find(robot);
         all.insert(all.end(), found.begin(), found.end());
     }
+    append(all, robot_slips(robot));
     return all;
 }
 
@@ -333,6 +335,7 @@ std::vector<KeyError> warnings_of(const ProblemCheck& check) {
         const std::vector<KeyError> found = find(problem);
         all.insert(all.end(), found.begin(), found.end());
     }
+    append(all, problem_slips(problem));
     append(all, closed_plane(check));
     append(all, geometry_warnings(check));
     return all;

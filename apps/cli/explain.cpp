@@ -11,6 +11,7 @@
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/key_reference.hpp"
+#include "downwash/problems/robot_sources.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -139,6 +140,7 @@ bool print_if_of_space(const ExplainArguments& given, const std::string& wanted)
 ExitCode run(const ExplainArguments& given) {
     const std::vector<KeyReference>& all = key_reference(*file_kind_named(given.kind));
     const std::string wanted = without_indices(given.key);
+    const std::string_view source = robot_source_text(last_name(wanted));
     for (const auto& is_meant : {ends_with_key, ends_with_stem}) {
         std::vector<std::pair<std::string, std::string>> found;  // paths, and what there is to say of all of them
         for (const KeyReference& known : all) {
@@ -161,6 +163,9 @@ ExitCode run(const ExplainArguments& given) {
             if (const std::string others = keys_with(wanted, all); !others.empty()) {
                 fmt::print("\nOther keys with this word:\n{}", others);
             }
+            if (!source.empty()) {
+                fmt::print("\n{}", source);
+            }
             return ExitCode::done;
         }
     }
@@ -171,6 +176,10 @@ ExitCode run(const ExplainArguments& given) {
         return ExitCode::done;
     }
     if (!is_of_space(given.kind) && print_if_of_space(given, wanted)) {
+        return ExitCode::done;
+    }
+    if (!source.empty()) {
+        fmt::print("{}", source);
         return ExitCode::done;
     }
     if (const std::string about = keys_about(wanted, all); !about.empty() && !wanted.empty()) {

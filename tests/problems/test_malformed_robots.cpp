@@ -59,7 +59,8 @@ const Edit edits[] = {
     {"max_torque_nm: 12", "max_torque_nm: 12, drag: {linear_n_s_m: 1}, wash: {scale: -1}",
      "13:155: arm.wash.scale is -1: expected a number from 0 to 10"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: [90, -90]",
-     "13:128: arm.limits_deg is [lower, upper]: expected the lower limit below the upper one, or both the same"},
+     "13:128: arm.limits_deg is [90, -90]: expected [lower, upper], the lower limit below the upper one, or both the "
+     "same"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: 90",
      "13:128: arm.limits_deg is '90': expected [lower, upper] in deg from -3600 to 3600, or null"},
     {"    - box: {size_m: [1, 1, 0.2], center_m: [0, 0, 0]}", "    []",
