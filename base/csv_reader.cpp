@@ -126,10 +126,13 @@ void CsvReader::add_length_error(std::size_t count) {
 }
 
 std::optional<double> CsvReader::number(std::size_t column, double low, double high) {
-    is_number_[column] = true;
+    is_used_[column] = true;
     const std::string_view text = cell(column);
     const auto value = decimal_number(text, decimal_sign_);
     if (value && *value >= low && *value <= high) {
+        CsvColumn& range = ranges_[column];
+        range.low = std::min(range.low, *value);
+        range.high = std::max(range.high, *value);
         return value;
     }
     std::string expected = sign_error(text);
@@ -145,8 +148,13 @@ std::optional<double> CsvReader::number(std::size_t column, double low, double h
 CsvFacts CsvReader::facts() const {
     CsvFacts facts{separator_, decimal_sign_, rows_, {}, {}};
     for (std::size_t i = 0; i < names_.size(); ++i) {
-        if (!names_[i].empty()) {
-            (is_number_[i] ? facts.used : facts.others).push_back(names_[i]);
+        if (names_[i].empty()) {
+            continue;
+        }
+        if (is_used_[i]) {
+            facts.used.push_back(ranges_[i]);
+        } else {
+            facts.others.push_back(names_[i]);
         }
     }
     return facts;
@@ -241,7 +249,8 @@ void CsvReader::name_columns() {
         }
         names_.push_back(name);
         header_places_.push_back(cells_[i].place);
-        is_number_.push_back(false);
+        is_used_.push_back(false);
+        ranges_.push_back({name});
     }
     errors_.throw_any();
 }

@@ -71,7 +71,10 @@ class DOWNWASH_EXPORT CsvReader {
     /// Adds an error at a cell of the current row.
     void add_error(std::size_t column, const std::string& message);
 
-    /// The dialect, the rows so far, and the columns of which number() was asked so far.
+    /// Tells that a column of texts is read too.
+    void use(std::size_t column) { is_used_[column] = true; }
+
+    /// The dialect, the rows so far, and the columns of which number() or use() told so far.
     [[nodiscard]] CsvFacts facts() const;
 
     /// All comments so far.
@@ -117,7 +120,8 @@ class DOWNWASH_EXPORT CsvReader {
     std::size_t decimal_line_ = 0;  ///< where a number shows the sign; 0 if none does
 
     std::vector<std::string> names_;
-    std::vector<bool> is_number_;  ///< of each column, whether it was read as numbers
+    std::vector<bool> is_used_;  ///< of each column, whether it was read
+    std::vector<CsvColumn> ranges_;
     std::vector<std::size_t> header_places_;
     std::size_t header_line_ = 0;
     std::vector<Comment> comments_;

@@ -105,6 +105,9 @@ Findings findings_in(const std::string& path) {
             static_cast<void>(read_campaign(path, on_warning, on_warning));
         } else if (kind == "data") {
             found.data = read_data_file(path);
+            for (const std::string& remark : data_remarks(*found.data)) {
+                found.warnings.push_back({path, 1, 1, remark});
+            }
         } else {
             found.problem = read_plannable_problem(path, {}, on_warning, on_warning);
         }

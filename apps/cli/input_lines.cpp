@@ -57,7 +57,7 @@ std::string dialect_text(const CsvFacts& csv) {
 }
 
 std::string columns_text(const CsvFacts& csv) {
-    const auto listed = [](const std::vector<std::string>& names, const auto& text) {
+    const auto listed = [](const auto& names, const auto& text) {
         constexpr std::size_t most = 6;
         std::string list;
         for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
@@ -65,11 +65,15 @@ std::string columns_text(const CsvFacts& csv) {
         }
         return names.size() > most ? list + fmt::format(" and {} more", names.size() - most) : list;
     };
-    const auto with_unit = [](const std::string& name) {
-        const std::string_view unit = unit_of_column(name);
-        return unit == "1" ? excerpt(name) : fmt::format("{} [{}]", excerpt(name), unit);
+    const auto with_range = [](const CsvColumn& column) {
+        if (!column.has_numbers()) {
+            return excerpt(column.name);
+        }
+        const std::string_view unit = unit_of_column(column.name);
+        return fmt::format("{}{} {} to {}", excerpt(column.name), unit == "1" ? "" : fmt::format(" [{}]", unit),
+                           rounded(column.low), rounded(column.high));
     };
-    std::string text = listed(csv.used, with_unit);
+    std::string text = listed(csv.used, with_range);
     if (!csv.others.empty()) {
         text += "; other columns: " + listed(csv.others, excerpt);
     }
