@@ -43,7 +43,8 @@ DataKind kind_of(const std::string& bytes, const std::string& name) {
         "has the columns '" + excerpt(joined(csv.names(), ", ")) +
             "': expected those of a grid (x_m,z_m,factor), of an effect table (z_over_r,factor), of measurements "
             "(z_over_r,thrust_ratio) or of measurements beside walls (distance_over_r,force_over_thrust,"
-            "moment_over_thrust_radius)");
+            "moment_over_thrust_radius)" +
+            csv.remedy_without({"z_over_r", "factor", "thrust_ratio"}));
     errors.throw_any();
     throw std::logic_error("columns of no kind are an error");
 }

@@ -362,6 +362,17 @@ std::vector<KeyError> warnings_of(const ProblemCheck& check) {
     return all;
 }
 
+std::vector<KeyError> file_warnings_of(const ProblemCheck& check, const WrongKeys& wrong) {
+    std::vector<KeyError> all;
+    if (!wrong.touch("aero")) {
+        append(all, unlikely_data(check));
+    }
+    if (!wrong.touch("environment") && !wrong.touch("robot")) {
+        append(all, geometry_warnings(check));
+    }
+    return all;
+}
+
 std::vector<KeyError> problem_warnings(const Problem& problem) {
     return warnings_of(ProblemCheck(problem));
 }

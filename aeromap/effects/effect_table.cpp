@@ -253,7 +253,8 @@ std::vector<Entry> entries_of(CsvReader& csv, LineErrors& errors) {
     const auto factor = csv.find("factor") ? csv.find("factor") : csv.find("thrust_ratio");
     if (!z || !factor) {
         errors.add(csv.header_line(), "has the columns '" + excerpt(joined(csv.names(), ", ")) +
-                                          "': expected z_over_r,factor or z_over_r,d_over_r,factor");
+                                          "': expected z_over_r,factor or z_over_r,d_over_r,factor" +
+                                          csv.remedy_without({"z_over_r", factor ? "z_over_r" : "factor"}));
         errors.throw_any();
     }
     std::vector<Entry> entries;

@@ -113,11 +113,11 @@ std::string text_of(const GeometryInput& geometry) {
     const auto range = [&extent](std::size_t k) {
         return fmt::format("{} to {} m", to_text(extent.low_m[k], 6), to_text(extent.high_m[k], 6));
     };
-    return fmt::format("{}: {} of {} {}, {}, {}{}, x {}, y {}, z {} in the world",
-                       geometry.name.empty() ? geometry.key : excerpt(geometry.name),
-                       geometry.is_mesh ? "mesh" : "octree", facts.element_count,
-                       geometry.is_mesh ? "triangles" : "cubes", counted(surface.pieces, "piece"),
-                       surface_name(surface), unseen_text(geometry), range(0), range(1), range(2));
+    return fmt::format(
+        "{}: {} of {}, {}, {}{}, x {}, y {}, z {} in the world",
+        geometry.name.empty() ? geometry.key : excerpt(geometry.name), geometry.is_mesh ? "mesh" : "octree",
+        counted(facts.element_count, geometry.is_mesh ? "triangle" : "cube"), counted(surface.pieces, "piece"),
+        surface_name(surface), unseen_text(geometry), range(0), range(1), range(2));
 }
 
 std::string text_of(const RobotInput& robot) {
