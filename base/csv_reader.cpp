@@ -152,7 +152,7 @@ void CsvReader::add_length_error(std::size_t count) {
                     message + "; if its numbers have decimal commas, separate the columns by ';' or quote the numbers");
         errors_.throw_any();  // as all lines will be
     }
-    if (count == names_.size() + 1 && rows_ == 1 && cells_.front().text == "1") {
+    if (count == names_.size() + 1 && rows_ == 1 && separator_ == ' ' && cells_.front().text == "1") {
         errors_.add(line_, message +
                                "; if the first one is the name of a row, as R writes it, leave those out "
                                "(row.names = FALSE)");
@@ -193,7 +193,10 @@ std::optional<double> CsvReader::number(std::size_t column, double low, double h
             ": expected a " +
             (is_limited ? "number from " + to_text(low) + " to " + to_text(high) : std::string("finite number")) +
             number_remedy(text, decimal_sign_);
-        if (rows_ == 1 && text.find_first_of("0123456789") == std::string_view::npos && !text.empty()) {
+        const auto has_digit = [](const Cell& each) {
+            return each.text.find_first_of("0123456789") != std::string_view::npos;
+        };
+        if (rows_ == 1 && std::none_of(cells_.begin(), cells_.end(), has_digit) && filled_cells() > 1) {
             expected += "; if this is a line of units, begin it with #";
         }
     }

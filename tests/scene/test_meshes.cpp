@@ -100,7 +100,8 @@ TEST_CASE("Meshes that cannot stand in a scene are errors with their place") {
     CHECK_THAT(error_in(mesh_of({a, b, c}, {})), Contains("obstacles[1].mesh.file: has no triangle with an area"));
     CHECK_THAT(error_in(mesh_of({a, b, c}, {{0, 1, 3}})), Contains("a corner that is not among its vertices"));
     CHECK_THAT(error_in(mesh_of({a, b, {2, 0, 0}}, {{0, 1, 2}, {0, 1, 1}})), Contains("no triangle with an area"));
-    CHECK_THAT(error_in(mesh_of({a, b, {0, std::nan(""), 0}}, {{0, 1, 2}})), Contains("vertex that is not finite"));
+    CHECK_THAT(error_in(mesh_of({a, b, {0, std::nan(""), 0}}, {{0, 1, 2}})),
+               Contains("has the corner [0, nan, 0], which is not finite"));
     CHECK_THAT(error_in(mesh_of({a, b, {0, 2e6, 0}}, {{0, 1, 2}})), Contains("farther than 1e6 m"));
     Mesh scaled = mesh_of({a, b, c}, {{0, 1, 2}});
     for (const double scale : {0.0, -1.0, std::nan(""), 1.0 / 0.0}) {
