@@ -299,7 +299,7 @@ TEST_CASE("a unit, an axis or a place that takes a mesh away is a warning with t
     CHECK(warning(pole_mm, ", scale: 0.001, center_m: [0, -2, 0]") == "none");
     const std::string in_mm = warning(pole_mm, ", center_m: [0, -2, 0]");
     CHECK_THAT(in_mm, Contains("mesh.file is 5000 m long, more than a hundred times the bounds") &&
-                          Contains("it would be near with `scale: 0.001` (5 m long), `scale: 0.01` (50 m long)"));
+                          Contains("it would be near with `scale: 0.001` (5 m long)"));
     CHECK_THAT(in_mm, !Contains("rpy_deg"));
     CHECK_THAT(
         warning(pole_m, ", scale: 0.001, center_m: [0, -2, 0]"),
