@@ -19,13 +19,12 @@ namespace {
 
 constexpr double max_factor = 2;
 constexpr char explanation[] =
-    "An error is the model's thrust ratio K minus the measured one; K is clamped to [1, 2], as formulas are in flight\n"
-    "(a table may be below 1). A positive error overstates the effect, a negative one understates it. Under a "
-    "ceiling,\n"
-    "overstating is careful: the plan expects more suction than there is, and only overrates the energy that suction\n"
-    "saves. Over the ground, overstating is optimistic: the plan counts on lift, stiffness and savings that do not\n"
-    "exist. Understating has the opposite consequences. `others`: the RMSE over all level measurements of other sources\n"
-    "at that surface. `level`: the RMSE if a tilted rotor counted as level.\n";
+    "An error is the model's thrust ratio K minus the measured one; K is clamped to [1, 2], as formulas are in\n"
+    "flight (a table may be below 1). A positive error overstates the effect, a negative one understates it. Under\n"
+    "a ceiling, overstating is careful: the plan expects more suction than there is, and only overrates the energy\n"
+    "that suction saves. Over the ground, overstating is optimistic: the plan counts on lift, stiffness and savings\n"
+    "that do not exist. Understating has the opposite consequences. `others`: the RMSE over all level measurements\n"
+    "of other sources at that surface. `level`: the RMSE if a tilted rotor counted as level.\n";
 
 Json parameters_json(const ModelScore& score) {
     auto parameters = Json::object();
