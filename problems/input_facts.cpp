@@ -28,11 +28,11 @@ GeometryInput geometry_input(const Obstacle& obstacle, const GeometryFacts& fact
 }  // namespace
 
 std::vector<GeometryInput> geometry_inputs(const Scene& scene) {
-    std::vector<GeometryInput> geometry;
+    std::vector<GeometryInput> all;
     for (const GeometryFacts& facts : geometry_facts(scene)) {
-        geometry.push_back(geometry_input(scene.obstacles()[facts.obstacle], facts));
+        all.push_back(geometry_input(scene.obstacles()[facts.obstacle], facts));
     }
-    return geometry;
+    return all;
 }
 
 InputFacts input_facts(const Problem& problem, const Scene& scene) {

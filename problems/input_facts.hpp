@@ -45,7 +45,7 @@ struct SpaceRobotInput {
     SpaceRobotFacts facts;
 };
 
-/// The meshes and octrees among obstacles, in their order. @param scene of these obstacles
+/// Every mesh and octree of a scene.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<GeometryInput> geometry_inputs(const Scene& scene);
 
 /// @param scene of the problem   @pre problem_errors(problem) is empty

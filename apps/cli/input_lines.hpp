@@ -18,8 +18,8 @@ namespace downwash::cli {
 /// The same of a robot in space: "hexa370_arm3: 2.56 kg, 3 joints, thrust 4.95 times the weight, ...".
 [[nodiscard]] std::string text_of(const SpaceRobotInput& robot);
 
-/// The file, then how it was read: "k.csv: effect table of 12 rows, z_over_r [rotor radii], factor; separated by ';',
-/// decimal commas".
+/// The file, then how it was read: "k.csv: effect table of 12 rows, z_over_r [rotor radii] 0.5 to 4, factor 1 to 1.3;
+/// separated by ';', decimal commas".
 [[nodiscard]] std::string text_of(const DataFacts& data);
 
 /// The same lines as rows of a summary. Of many meshes and octrees, or tables, only the first few.
