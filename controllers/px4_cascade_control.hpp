@@ -90,7 +90,7 @@ Px4Cascade::Memory<T, n> Px4Cascade::rested(const SpaceLawModel<n>& nominal, con
         memory.previous_velocity[i] = state.u[i];
         memory.previous_rate[i] = state.u[3 + i];
     }
-    T weight_nm[room_for<n>], needed[room_for<n>];
+    T weight_nm[room_for<n>]{}, needed[room_for<n>]{};
     for (int i = 0; i < n; ++i) {
         weight_nm[i] = dot(e.joint_push_kg_m[i], up);
     }
@@ -166,7 +166,7 @@ T Px4Cascade::control(const SpaceLawModel<n>& nominal, const dynamics::SpaceStat
     T saturation = controllers::command_rotors(nominal, seen, no_ratio, demand, tick_s, rotor_lead, given).saturation;
 
     // Joints: the torques that accelerate the arm as wanted while the multirotor stands still.
-    T joint_error[room_for<n>], joint_torque_nm[room_for<n>];
+    T joint_error[room_for<n>]{}, joint_torque_nm[room_for<n>]{};
     if constexpr (n > 0) {
         const auto places = dynamics::places_at(plant, q, attitude);
         const auto e = dynamics::equations_of_motion(plant, places, u);

@@ -60,7 +60,7 @@ T SpaceInversion::control(const SpaceLawModel<n>& nominal, const dynamics::Space
                     T(gains.kp_1_s2) * error[i] +
                     controllers::integral_action(gains.ki_1_s3, gains.integral_limit, memory.position_integral[i]);
     }
-    T joint_error[room_for<n>], joint_acceleration[room_for<n>];
+    T joint_error[room_for<n>]{}, joint_acceleration[room_for<n>]{};
     LaneVector<T> push = e.bias_force_n;  // what arm and velocity products need, body axes
     LaneVector<T> spin = e.bias_torque_nm;
     for (int i = 0; i < n; ++i) {
@@ -123,13 +123,13 @@ T SpaceInversion::control(const SpaceLawModel<n>& nominal, const dynamics::Space
         thrust_n * axis.z, cross(e.first_moment_kg_m, acceleration) + e.inertia_kg_m2 * turning + spin};
 
     // Rotors, then joints under what the rotors will give.
-    T ratio[max_rotors];
+    T ratio[max_rotors]{};
     if (feed_forward) {
         controllers::read_ratios(nominal, seen, attitude, feed_forward_offset_m, map, ratio);
     }
     const controllers::CommandedRotors<T> rotors =
         controllers::command_rotors(nominal, seen, feed_forward ? ratio : nullptr, demand, tick_s, rotor_lead, given);
-    T joint_torque_nm[room_for<n>];
+    T joint_torque_nm[room_for<n>]{};
     controllers::joint_torques_for(plant, e, rotors.wrench, joint_acceleration, joint_torque_nm);
     const T saturation = controllers::command_joints(nominal, joint_torque_nm, rotors.saturation, given);
 

@@ -175,10 +175,11 @@ template <int n>
     const dynamics::SpaceEquations<double, n> e = dynamics::equations_of_motion(plant, places, still);
     SpaceRest<Px4Cascade, n> rest;
     double errors = 0;
-    double y[room_for<n>];
-    accelerations_of_arm(e, command.joint_torque_nm, y);
+    double joint_acceleration[room_for<n>]{};
+    accelerations_of_arm(e, command.joint_torque_nm, joint_acceleration);
     for (int i = 0; i < n; ++i) {
-        const SettledPid joint = settled_pid(y[i], law.joint.kp_1_s2, law.joint.ki_1_s3, law.joint.integral_limit);
+        const SettledPid joint =
+            settled_pid(joint_acceleration[i], law.joint.kp_1_s2, law.joint.ki_1_s3, law.joint.integral_limit);
         rest.memory.joint_integral[i] = joint.integral;
         rest.feeds_back.joint_integral[i] = joint.feeds_back;
         rest.error[space::first_joint + i] = joint.error;
