@@ -66,7 +66,7 @@ template <std::size_t size>
     return p;
 }
 
-/// The derivative by s, divided by a duration if s is a time over it.
+/// The derivative by s times the inverse of a duration: the derivative by time where s is a time over that duration.
 template <std::size_t size>
 [[nodiscard]] constexpr std::array<double, size - 1> derivative(const std::array<double, size>& p,
                                                                 double inverse_duration = 1) noexcept {
@@ -113,7 +113,7 @@ template <std::size_t size, std::size_t dimensions>
 enum class Bound : std::uint8_t {
     kept,    ///< proven: nowhere on [0, 1] above the limit
     broken,  ///< above the limit somewhere, or no number
-    open,    ///< within what halving tells apart: nearer to the limit than 1e-10 of the size of its coefficients
+    open,    ///< so near to the limit, about 1e-10 of the greatest coefficient, that halving does not tell
 };
 
 /// The greatest degree that is_at_most() takes.
@@ -121,7 +121,7 @@ inline constexpr int max_bernstein_degree = 12;
 
 /// Whether a polynomial is at most `limit` all over [0, 1]. The greatest coefficient within the limit proves it, a
 /// value above refutes it; else the interval is halved, at most 20 times (de Casteljau). Allocates nothing.
-/// Rounding counts for nothing only if the limit has some room: about 1e-14 of the greatest coefficient.
+/// The arithmetic rounds: what is kept may be above the limit by some 1e-14 of the greatest coefficient.
 /// @param coefficients of degree 0 to max_bernstein_degree
 [[nodiscard]] DOWNWASH_EXPORT Bound is_at_most(std::span<const double> coefficients, double limit) noexcept;
 

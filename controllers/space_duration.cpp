@@ -24,16 +24,16 @@ double length(const Vector3& v) {
     return std::sqrt(dot(v, v));
 }
 
-/// Durations between two points that alone rule out others, whatever the polynomial between them.
+/// What limits alone say of the duration of a motion between two points, whichever quintics lead from one to the other:
+/// cheap conditions that a duration has to meet.
 class PossibleDurations {
  public:
     PossibleDurations(const SpacePoint& from, const SpacePoint& to, const SpaceMotionLimits& limits)
         : from_(from), to_(to), limits_(limits) {
+        max_acceleration_m_s2_ = limits.max_acceleration_m_s2;
         if (limits.max_thrust_ratio) {  // |a| <= |a + g| + g
             max_acceleration_m_s2_ =
-                std::min(limits.max_acceleration_m_s2, (*limits.max_thrust_ratio + 1) * standard_gravity_m_s2);
-        } else {
-            max_acceleration_m_s2_ = limits.max_acceleration_m_s2;
+                std::min(max_acceleration_m_s2_, (*limits.max_thrust_ratio + 1) * standard_gravity_m_s2);
         }
         const Vector3 turn = translation(to.acceleration) - translation(from.acceleration);
         shortest_s_ = std::max({length(translation(to.position) - translation(from.position)) / limits.max_speed_m_s,

@@ -48,6 +48,15 @@ bool is_within(const std::array<std::array<double, size>, dimensions>& vector, d
            controllers::is_at_most(controllers::squared_length(vector), max_square) == controllers::Bound::kept;
 }
 
+/// Whether a polynomial is nowhere below a limit.
+template <std::size_t size>
+bool is_at_least(std::array<double, size> p, double limit) {
+    for (double& coefficient : p) {
+        coefficient = -coefficient;
+    }
+    return controllers::is_at_most(p, -limit) == controllers::Bound::kept;
+}
+
 /// The first derivative by time of some axes.
 template <int count>
 std::array<Bernstein<4>, count> velocity_of(const SpaceSegment& segment, int first_axis) {
@@ -89,11 +98,7 @@ bool keeps_tilt_rate(const std::array<Bernstein<3>, 3>& f, const std::array<Bern
         }
     }
     const Bernstein<6> square = controllers::squared_length(f);
-    Bernstein<6> less_force = square;
-    for (double& coefficient : less_force) {
-        coefficient = -coefficient;
-    }
-    if (controllers::is_at_most(less_force, -(min_force * min_force)) != controllers::Bound::kept) {
+    if (!is_at_least(square, min_force * min_force)) {
         return false;
     }
     std::array<Bernstein<5>, 3> turn{};  // f x f'
@@ -124,12 +129,7 @@ bool translation_keeps_limits(const SpaceSegment& segment, const SpaceMotionLimi
         coefficient += standard_gravity_m_s2;
     }
     if (limits.max_thrust_ratio) {
-        Bernstein<3> down = f[2];
-        for (double& coefficient : down) {
-            coefficient = -coefficient;
-        }
-        if (!is_within(f, *limits.max_thrust_ratio * standard_gravity_m_s2) ||
-            controllers::is_at_most(down, 0) != controllers::Bound::kept) {
+        if (!is_within(f, *limits.max_thrust_ratio * standard_gravity_m_s2) || !is_at_least(f[2], 0)) {
             return false;
         }
     }

@@ -30,8 +30,8 @@ inline SpaceMotionLimits agile_space_limits() {
     SpaceMotionLimits limits;
     limits.max_speed_m_s = 4;
     limits.max_acceleration_m_s2 = 9;
-    limits.max_jerk_m_s3 = 60;
-    limits.max_thrust_ratio = 1.5;
+    limits.max_jerk_m_s3 = 34;
+    limits.max_thrust_ratio = 1.3;
     limits.max_tilt_rate_rad_s = 3;
     limits.max_yaw_rate_rad_s = 3;
     limits.max_yaw_acceleration_rad_s2 = 10;

@@ -105,7 +105,7 @@ TEST_CASE("A bound is proven or refuted as dense samples say, however near the g
     Random random(3);
     int kept = 0;
     int broken = 0;
-    for (int i = 0; i < 10000; ++i) {
+    for (int i = 0; i < 3000; ++i) {
         const auto powers = random_powers<13>(random);
         const auto p = from_powers(powers);
         const double top = greatest(powers);
@@ -122,8 +122,8 @@ TEST_CASE("A bound is proven or refuted as dense samples say, however near the g
         kept += bound == Bound::kept ? 1 : 0;
         broken += bound == Bound::broken ? 1 : 0;
     }
-    CHECK(kept > 3000);
-    CHECK(broken > 3000);
+    CHECK(kept > 1000);
+    CHECK(broken > 1000);
 }
 
 TEST_CASE("A peak that touches the limit is neither proven nor refuted, one with the least room is") {

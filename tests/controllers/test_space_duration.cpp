@@ -117,8 +117,8 @@ TEST_CASE("From and to moving ends the limits are kept, and no shorter motion ke
     int none = 0;
     for (int i = 0; i < 600; ++i) {
         const SpaceMotionLimits& limits = i % 2 == 0 ? agile : gentle;
-        const double speed = i % 2 == 0 ? 2 : 0.5;
-        const double acceleration = i % 3 == 0 ? 0 : 0.3 * speed * random.uniform(0, 2);
+        const double speed = i % 2 == 0 ? 2.2 : 0.55;
+        const double acceleration = i % 3 == 0 ? 0 : (i % 2 == 0 ? 5 : 0.28);
         const SpacePoint from = test::random_space_point(random, 1, 2, speed, acceleration);
         const SpacePoint to = test::random_space_point(random, 1, 2, i % 4 == 0 ? 0 : speed, acceleration);
         if (!keeps_limits(from, limits) || !keeps_limits(to, limits)) {

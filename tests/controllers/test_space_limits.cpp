@@ -109,7 +109,7 @@ TEST_CASE("Each limit of a point counts, those of x, y and z together") {
         *value = before;
     }
     limits.max_acceleration_m_s2 = 12;
-    point.acceleration[space::z] = 0.24 * g_m_s2;
+    point.acceleration[space::z] = 0.22 * g_m_s2;
     point.acceleration[space::y] = 0;
     CHECK(keeps_limits(point, limits));
     point.acceleration[space::z] = 0.25 * g_m_s2;  // and 2 m/s2 along x
