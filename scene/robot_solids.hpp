@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/convex.hpp"
@@ -43,7 +44,7 @@ struct RobotFrame {
 };
 
 /// The multirotor's bodies in frame 0 and the arm in frame 1, from its joint, x along the arm.
-[[nodiscard]] std::vector<FramedSolid> solids_of(const RobotShape& robot);
+[[nodiscard]] DOWNWASH_EXPORT std::vector<FramedSolid> solids_of(const RobotShape& robot);
 
 [[nodiscard]] std::vector<RobotPiece> pieces_of(const std::vector<FramedSolid>& solids);
 
