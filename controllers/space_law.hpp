@@ -115,8 +115,9 @@ struct SpaceRateGains {
 };
 
 /// PX4's cascade (docs/model.md 5.10): position P, velocity PID, thrust direction, attitude P with the reduced attitude
-/// first, rates PID, control allocation. The joints of an arm have a PID. Defaults of position, velocity and attitude are PX4's;
-/// its rate gains are in shares of the greatest torque, ours in SI units for a vehicle whose rotors follow in 0.02 s.
+/// first, rates PID, control allocation. The joints of an arm have a PID. Defaults of position, velocity and attitude
+/// are PX4's; its rate gains are in shares of the greatest torque, ours in SI units for a vehicle whose rotors follow
+/// in 0.02 s.
 struct Px4Cascade {
     static constexpr const char* name = "px4-cascade";
 
