@@ -122,8 +122,13 @@ TEST_CASE("a robot in space is read as it was written") {
     robot.plant.wash = WashParameters{0.9};
     robot.links[0].is_limited = false;
     robot.links[0].lower_limit_rad = robot.links[0].upper_limit_rad = 0;
-    robot.controller.law =
-        Px4Cascade{1, 1, {1, 2, 3, 4}, {2, 3, 4, 5}, {3, 4, 5, 6}, 6, 0.3, {4, 5, 6, 7}, {5, 6, 7, 8}};
+    Px4Cascade law;
+    law.position_p_1_s = 1.1;
+    law.height_p_1_s = 1.2;
+    law.attitude_p_1_s = 6.1;
+    law.yaw_weight = 0.3;
+    law.joint = {3, 4, 5, 6};
+    robot.controller.law = law;
     folder.write("written.yaml", robot_yaml(robot));
     const SpaceRobot again = read_space_robot(folder / "written.yaml");
     CHECK(robot_yaml(again) == robot_yaml(robot));
@@ -132,7 +137,8 @@ TEST_CASE("a robot in space is read as it was written") {
     CHECK(again.min_thrust_n == robot.min_thrust_n);
     CHECK(again.plant.wash == robot.plant.wash);
     CHECK_FALSE(again.links[0].is_limited);
-    CHECK(std::get<Px4Cascade>(again.controller.law).yaw_rate.ki_1_s3 == 7);
+    CHECK(std::get<Px4Cascade>(again.controller.law).yaw_weight == 0.3);
+    CHECK(std::get<Px4Cascade>(again.controller.law).joint.ki_1_s3 == 5);
 }
 
 TEST_CASE("robots of published numbers have their masses and hover with the thrusts that follow by hand") {

@@ -50,10 +50,7 @@ SpaceRobot two_link_robot() {
 }  // namespace
 
 TEST_CASE("A sound robot in space has no errors") {
-    for (const KeyError& error : space_robot_errors(two_link_robot())) {
-        CAPTURE(error.key, error.message);
-        CHECK(false);
-    }
+    CHECK(space_robot_errors(two_link_robot()).empty());
 }
 
 TEST_CASE("Joints turn what they carry: places of an arm in space by hand") {
@@ -151,6 +148,7 @@ TEST_CASE("Rotors that cannot turn a vehicle have a lower rank") {
     }
     CHECK(allocation_rank(robot.plant, true) == 4);
     for (SpaceRotor& rotor : robot.plant.rotors) {
+        rotor.axis = {0, 0, 1};
         rotor.position_m[1] = rotor.position_m[0];
     }
     CHECK(allocation_rank(robot.plant, false) == 2);
