@@ -15,6 +15,10 @@ bool has_ending(const std::filesystem::path& file, std::span<const std::string_v
     return std::ranges::any_of(endings, [&](std::string_view known) { return is_same_word(known, ending); });
 }
 
+bool is_letter(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
 std::string_view first_line_of(std::string_view text) {
     return text.substr(0, text.find_first_of("\r\n"));
 }
@@ -50,8 +54,8 @@ std::string foreign_file_text(const std::filesystem::path& file, std::string_vie
         return std::string("is a robot in ") + (is_robot ? "URDF" : "SDF") + ": expected a robot file in YAML (" +
                std::string(urdf_keys) + "); docs/robot_files.md has an example";
     }
-    if (has_ending(file, tables) ||
-        (line.find(':') == std::string_view::npos && line.find_first_of(",;\t") != std::string_view::npos)) {
+    if (has_ending(file, tables) || (std::ranges::any_of(line, is_letter) && line.find(':') == std::string_view::npos &&
+                                     line.find_first_of(",;\t") != std::string_view::npos)) {
         return "is a table: expected YAML" +
                (is_thrust_stand(line) ? "; " + std::string(thrust_stand_keys) : std::string());
     }

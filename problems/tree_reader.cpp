@@ -282,7 +282,9 @@ template <class Model>
 bool TreeReader<Model>::is_undecided(const Group& group, const Parameter<Model>& parameter) const {
     return std::ranges::any_of(table_.children(group.path), [&](const Parameter<Model>* other) {
         const std::string_view name = last_name(other->path);
-        return wrong_.touch(joined(group.key, name)) && names(parameter.condition, name);
+        const bool is_misspelt = std::ranges::find(group.meant, name) != group.meant.end();
+        const bool is_wrong = other->kind == ParameterKind::choice && wrong_.touch(joined(group.key, name));
+        return (is_misspelt || is_wrong) && names(parameter.condition, name);
     });
 }
 
