@@ -346,7 +346,8 @@ std::vector<KeyError> warnings_of(const ProblemCheck& check) {
     for (KeyError& warning : all) {
         warning.key.insert(0, "robot.");
     }
-    for (const auto& find : {no_margin<Problem>, thrust_beyond_rotors, goal_at_start, unlikely_data, exact_uncertainty}) {
+    for (const auto& find :
+         {no_margin<Problem>, thrust_beyond_rotors, goal_at_start, unlikely_data, exact_uncertainty}) {
         const std::vector<KeyError> found = find(problem);
         all.insert(all.end(), found.begin(), found.end());
     }
