@@ -11,11 +11,11 @@ namespace {
 /// A steady force in world axes and a steady torque in body axes on the multirotor.
 struct Pushed : dynamics::CalmSpace {
     dynamics::LaneVector<double> force_n, torque_nm;
-    template <class T>
-    void add_load(const T* /*q*/, const T* /*u*/, const dynamics::LaneRotation<T>& attitude,
-                  dynamics::SpaceWrench<T>& wrench) const {
-        wrench.force_n = wrench.force_n + turned_back(attitude, force_n);
-        wrench.torque_nm = wrench.torque_nm + torque_nm;
+    template <class T, int n>
+    void add_load(const T* /*q*/, const T* /*u*/, const dynamics::SpacePlaces<T, n>& places,
+                  dynamics::SpaceLoad<T, n>& load) const {
+        load.wrench.force_n = load.wrench.force_n + turned_back(places.attitude, force_n);
+        load.wrench.torque_nm = load.wrench.torque_nm + torque_nm;
     }
 };
 
