@@ -14,12 +14,14 @@
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/convex.hpp"
 #include "downwash/scene/fcl_distances.hpp"
+#include "downwash/scene/robot_solids.hpp"
 #include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t arm_frame = 1;
 
 bool is_finite(const PlanarPose& pose) {
     return std::isfinite(pose.x_m + pose.z_m + pose.pitch_rad + pose.arm_rad + pose.lateral_m);
@@ -43,13 +45,7 @@ struct Frame {
                            v[0] * plane.sin_heading() + v[1] * plane.cos_heading(), v[2]};
         };
         const Vector3 center = placed(own.center_m);
-        Convex convex = own;
-        convex.center_m = plane.to_world(center[0], center[1], center[2]);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(own.segment_count); ++i) {
-            convex.half_axes_m[i] = in_world(own.half_axes_m[i]);
-        }
-        convex.disc_normal = in_world(own.disc_normal);
-        return convex;
+        return downwash::placed(own, plane.to_world(center[0], center[1], center[2]), in_world);
     }
 };
 
@@ -57,12 +53,6 @@ Frame frame_at(const Vector3& origin_m, double angle_rad) {
     const auto [sine, cosine] = lane::sin_cos(angle_rad);
     return {origin_m[0], origin_m[1], origin_m[2], cosine, sine};
 }
-
-/// A piece of the robot in its own frame: that of the multirotor, or that of the arm (from the joint, x along the arm).
-struct Piece {
-    Convex convex;
-    bool is_arm = false;
-};
 
 void require_valid(const RobotShape& robot) {
     std::vector<KeyError> errors;
@@ -77,19 +67,6 @@ void require_valid(const RobotShape& robot) {
     inspect_length(robot.arm_length_m, "arm_length_m");
     inspect_length(robot.arm_radius_m, "arm_radius_m");
     throw_if_any(std::move(errors));
-}
-
-std::vector<Piece> pieces_of(const RobotShape& robot) {
-    std::vector<Piece> pieces;
-    for (const BodyShape& body : robot.bodies) {
-        const Matrix3 identity{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-        pieces.push_back({convex_of(body.shape, body.center_body_m, placement_of(body.shape, identity))});
-    }
-    const Vector3 half_arm{0.5 * robot.arm_length_m, 0, 0};
-    const Convex arm{
-        .center_m = half_arm, .segment_count = 1, .half_axes_m = {half_arm}, .ball_radius_m = robot.arm_radius_m};
-    pieces.push_back({arm, true});
-    return pieces;
 }
 
 /// Upper bound of the distance from the frame's origin to any point of the solid.
@@ -115,7 +92,8 @@ struct CollisionChecker::Impl {
     Impl(std::shared_ptr<const Scene> scene, const PlaneOfMotion& plane, RobotShape robot, CollisionCheckerKind kind);
 
     const FclDistances& fcl() const {
-        std::call_once(is_fcl_made, [this] { made_fcl = std::make_unique<const FclDistances>(scene, plane, robot); });
+        std::call_once(is_fcl_made,
+                       [this] { made_fcl = std::make_unique<const FclDistances>(scene, solids_of(robot), reach_m); });
         return *made_fcl;
     }
 
@@ -124,19 +102,14 @@ struct CollisionChecker::Impl {
     bool any_piece(const PlanarPose& pose, const Visit& visit) const {
         const Frame body = frame_at({pose.x_m, pose.lateral_m, pose.z_m}, pose.pitch_rad);
         const Frame arm = frame_at(body.placed(joint_m), pose.pitch_rad + pose.arm_rad);
-        return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
-            return visit((piece.is_arm ? arm : body).placed(piece.convex, plane));
+        return std::any_of(pieces.begin(), pieces.end(), [&](const RobotPiece& piece) {
+            return visit((piece.frame == arm_frame ? arm : body).placed(piece.convex, plane));
         });
     }
 
     /// Whether the box that holds the robot at any attitude keeps `margin_m` from every obstacle.
     bool is_far_away(const PlanarPose& pose, double margin_m) const {
-        const Vector3 center = plane.to_world(pose.x_m, pose.lateral_m, pose.z_m);
-        const Vector3 reach{reach_m, reach_m, reach_m};
-        const BoundingBox everywhere{center - reach, center + reach};
-        const auto gap = [&](const BoundingBox& box) { return gap_m(everywhere, box); };
-        const auto is_near = [&](std::size_t part) { return gap(solids.parts.bounds(part)) <= margin_m; };
-        return !solids.parts.any(gap, margin_m, is_near) && !solids.is_inside_mesh(center);
+        return downwash::is_far_away(solids, plane.to_world(pose.x_m, pose.lateral_m, pose.z_m), reach_m, margin_m);
     }
 
     std::shared_ptr<const Scene> scene;
@@ -144,7 +117,7 @@ struct CollisionChecker::Impl {
     PlaneOfMotion plane;
     RobotShape robot;
     CollisionCheckerKind kind;
-    std::vector<Piece> pieces;
+    std::vector<RobotPiece> pieces;
     Vector3 joint_m;          ///< in the body frame
     double reach_m = 0;       ///< the reach of all pieces
     double body_reach_m = 0;  ///< the reach of the pieces of the multirotor
@@ -161,12 +134,13 @@ CollisionChecker::Impl::Impl(std::shared_ptr<const Scene> the_scene, const Plane
       kind(the_kind),
       joint_m{robot.joint_x_m, 0, robot.joint_z_m} {
     require_valid(robot);
-    pieces = pieces_of(robot);
-    for (const Piece& piece : pieces) {
+    pieces = pieces_of(solids_of(robot));
+    for (const RobotPiece& piece : pieces) {
+        const bool is_arm = piece.frame == arm_frame;
         const double offset =
-            piece.is_arm ? std::sqrt(robot.joint_x_m * robot.joint_x_m + robot.joint_z_m * robot.joint_z_m) : 0;
+            is_arm ? std::sqrt(robot.joint_x_m * robot.joint_x_m + robot.joint_z_m * robot.joint_z_m) : 0;
         reach_m = std::max(reach_m, offset + reach_of(piece.convex));
-        body_reach_m = piece.is_arm ? body_reach_m : std::max(body_reach_m, reach_of(piece.convex));
+        body_reach_m = is_arm ? body_reach_m : std::max(body_reach_m, reach_of(piece.convex));
     }
 }
 
@@ -183,7 +157,8 @@ bool CollisionChecker::is_nearer_than(const PlanarPose& pose, double margin_m) c
         return true;
     }
     if (impl_->kind == CollisionCheckerKind::fcl) {
-        return impl_->fcl().is_nearer_than(pose, margin_m);
+        const double margins_m[] = {margin_m, margin_m};
+        return impl_->fcl().is_nearer_than(planar_frames(impl_->plane, impl_->joint_m, pose), margins_m);
     }
     return !impl_->is_far_away(pose, std::max(margin_m, contact_m)) &&
            impl_->any_piece(pose, [&](const Convex& piece) { return impl_->solids.are_near(piece, margin_m); });
@@ -202,28 +177,16 @@ double CollisionChecker::clearance_m(const PlanarPose& pose) const {
         return -infinity;
     }
     if (impl_->kind == CollisionCheckerKind::fcl) {
-        return impl_->fcl().clearance_m(pose);
+        return impl_->fcl().clearance_m(planar_frames(impl_->plane, impl_->joint_m, pose), infinity);
     }
-    double min_m = infinity;
-    impl_->any_piece(pose, [&](const Convex& piece) {
-        min_m = impl_->solids.clearance_m(piece, min_m);
-        return false;
-    });
-    return min_m < contact_m ? std::min(min_m, 0.0) : min_m;
+    return clearance_of(impl_->solids, infinity, [&](const auto& visit) { impl_->any_piece(pose, visit); });
 }
 
 std::optional<std::size_t> CollisionChecker::nearest_obstacle(const PlanarPose& pose, double within_m) const {
     if (!is_finite(pose)) {
         return std::nullopt;
     }
-    std::optional<NearObstacle> nearest;
-    impl_->any_piece(pose, [&](const Convex& piece) {
-        if (const auto nearer = impl_->solids.nearest(piece, nearest ? nearest->distance_m : within_m)) {
-            nearest = nearer;
-        }
-        return nearest && nearest->distance_m <= 0;
-    });
-    return nearest ? std::optional(nearest->obstacle) : std::nullopt;
+    return nearest_of(impl_->solids, within_m, [&](const auto& visit) { impl_->any_piece(pose, visit); });
 }
 
 }  // namespace downwash

@@ -174,6 +174,12 @@ struct ConvexMaker {
                 .disc_radius_m = cylinder.radius_m};
     }
     Convex operator()(const Sphere& sphere) const { return {.center_m = center_m, .ball_radius_m = sphere.radius_m}; }
+    Convex operator()(const Capsule& capsule) const {
+        return {.center_m = center_m + placement.rotation * (0.5 * (capsule.from_m + capsule.to_m)),
+                .segment_count = 1,
+                .half_axes_m = {placement.rotation * (0.5 * (capsule.to_m - capsule.from_m))},
+                .ball_radius_m = capsule.radius_m};
+    }
 };
 
 }  // namespace
@@ -186,6 +192,12 @@ Placement placement_of(const Primitive& shape, const Matrix3& rotation) noexcept
 
 Convex convex_of(const Primitive& shape, const Vector3& center_m, const Placement& placement) {
     return std::visit(ConvexMaker{center_m, placement}, shape);
+}
+
+Convex convex_of(const SpaceBodyShape& solid) {
+    const auto* cylinder = std::get_if<Cylinder>(&solid.shape);
+    const Placement upright{{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, cylinder ? unit(cylinder->axis) : Vector3{0, 0, 1}};
+    return std::visit(ConvexMaker{solid.center_m, upright}, solid.shape);
 }
 
 Vector3 half_extents_m(const Convex& convex) noexcept {

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "downwash/scene/bounding_box.hpp"
 #include "downwash/scene/shapes.hpp"
+#include "downwash/scene/space_shape.hpp"
 
 namespace downwash {
 
@@ -36,6 +38,21 @@ Placement placement_of(const Primitive& shape, const Matrix3& rotation) noexcept
 
 /// The solid `shape` with its own frame placed at `center_m` in the frame of `placement`.
 Convex convex_of(const Primitive& shape, const Vector3& center_m, const Placement& placement);
+
+/// A solid of a robot in the frame of its body.
+Convex convex_of(const SpaceBodyShape& solid);
+
+/// A solid whose directions are turned and whose centre is moved. @param turn turns a vector
+template <class Turn>
+Convex placed(const Convex& own, const Vector3& center_m, const Turn& turn) {
+    Convex convex = own;
+    convex.center_m = center_m;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(own.segment_count); ++i) {
+        convex.half_axes_m[i] = turn(own.half_axes_m[i]);
+    }
+    convex.disc_normal = turn(own.disc_normal);
+    return convex;
+}
 
 /// Half the extents along the axes of the frame [m]: the tight bounding box is center +- these.
 Vector3 half_extents_m(const Convex& convex) noexcept;

@@ -22,7 +22,6 @@
 #include <utility>
 #include <vector>
 
-#include "downwash/base/lane_math.hpp"
 #include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
@@ -60,8 +59,21 @@ Pose turned_to(const Pose& pose, const Vector3& direction) {
     return turned;
 }
 
-/// FCL's shape of a primitive whose own frame has that pose, and where FCL's frame is.
-std::pair<Geometry, Pose> placed_solid(const Primitive& primitive, const Pose& pose) {
+/// The same for a capsule's own direction, exact along the axes (Duff et al. 2017). @param d of length 1
+Pose along(const Pose& pose, const Eigen::Vector3d& d) {
+    const double sign = std::copysign(1.0, d.z());
+    const double a = -1 / (sign + d.z()), b = d.x() * d.y() * a;
+    Pose turned = pose;
+    Eigen::Matrix3d axes;
+    axes << 1 + sign * d.x() * d.x() * a, b, d.x(),  //
+        sign * b, sign + d.y() * d.y() * a, d.y(),   //
+        -sign * d.x(), -d.y(), d.z();
+    turned.linear() = pose.linear() * axes;
+    return turned;
+}
+
+/// FCL's shape of a solid whose own frame has that pose, and where FCL's frame is.
+std::pair<Geometry, Pose> placed_solid(const SpaceShape& shape, const Pose& pose) {
     struct Maker {
         const Pose& pose;
         std::pair<Geometry, Pose> operator()(const Box& box) const {
@@ -74,8 +86,17 @@ std::pair<Geometry, Pose> placed_solid(const Primitive& primitive, const Pose& p
             return {std::make_shared<fcl::Cylinderd>(cylinder.radius_m, cylinder.length_m),
                     turned_to(pose, cylinder.axis)};
         }
+        std::pair<Geometry, Pose> operator()(const Capsule& capsule) const {
+            const Eigen::Vector3d axis = vector_of(capsule.to_m - capsule.from_m);
+            const double length_m = axis.norm();
+            const Eigen::Vector3d direction =
+                length_m > 0 ? Eigen::Vector3d(axis / length_m) : Eigen::Vector3d::UnitZ();
+            Pose middle = pose;
+            middle.translation() += pose.linear() * vector_of(0.5 * (capsule.from_m + capsule.to_m));
+            return {std::make_shared<fcl::Capsuled>(capsule.radius_m, length_m), along(middle, direction)};
+        }
     };
-    return std::visit(Maker{pose}, primitive);
+    return std::visit(Maker{pose}, shape);
 }
 
 /// Half the extent of a convex solid along a direction in its own frame [m]; infinity where the shape is none of ours.
@@ -197,11 +218,11 @@ class Part {
     Proxy proxy_;
 };
 
-/// A solid of the robot, in the frame of the multirotor or that of the arm (from the joint, x along the arm).
+/// A solid of the robot in one of its frames.
 struct Piece {
     Geometry geometry;
     Pose pose;
-    bool is_arm = false;
+    std::size_t frame = 0;
 };
 
 /// A piece in the world.
@@ -211,22 +232,34 @@ struct PlacedPiece {
     fcl::AABBd box;
 };
 
+/// What a piece is compared with.
+struct Target {
+    const fcl::CollisionGeometryd& geometry;
+    const Pose& pose;
+    bool is_mesh = false;
+};
+
+Target target_of(const Part& part) {
+    return {part.geometry(), part.pose(), part.is_mesh()};
+}
+
 fcl::GJKSolverType solver_of(FclSolver solver) {
     return solver == FclSolver::indep ? fcl::GST_INDEP : fcl::GST_LIBCCD;
 }
 
-bool are_in_contact(fcl::GJKSolverType solver, const fcl::CollisionGeometryd& a, const Pose& at_a, const Part& part) {
+bool are_in_contact(fcl::GJKSolverType solver, const fcl::CollisionGeometryd& a, const Pose& at_a,
+                    const Target& target) {
     fcl::CollisionRequestd request;
     request.gjk_solver_type = solver;
     fcl::CollisionResultd result;
-    return fcl::collide(&a, at_a, &part.geometry(), part.pose(), request, result) > 0;
+    return fcl::collide(&a, at_a, &target.geometry, target.pose, request, result) > 0;
 }
 
-/// Whether a piece that grew by a margin touches a part: the same as being nearer than the margin for round pieces,
+/// Whether a piece that grew by a margin touches a target: the same as being nearer than the margin for round pieces,
 /// while the corners of others are sharp, so that only false is sure.
-bool may_be_nearer(fcl::GJKSolverType solver, const PlacedPiece& piece, const Part& part, double margin_m) {
+bool may_be_nearer(fcl::GJKSolverType solver, const PlacedPiece& piece, const Target& target, double margin_m) {
     const auto collides = [&](const fcl::CollisionGeometryd& grown) {
-        return are_in_contact(solver, grown, piece.pose, part);
+        return are_in_contact(solver, grown, piece.pose, target);
     };
     switch (piece.geometry.getNodeType()) {
         case fcl::GEOM_BOX: {
@@ -260,31 +293,31 @@ struct Answer {
     double proven_m;    ///< no less, if above 0: the gap along the line between the nearest points that it names
 };
 
-Answer answer_of(fcl::GJKSolverType solver, const PlacedPiece& piece, const Part& part) {
+Answer answer_of(fcl::GJKSolverType solver, const PlacedPiece& piece, const Target& target) {
     fcl::DistanceRequestd request(true);
     request.gjk_solver_type = solver;
     request.distance_tolerance = gjk_tolerance;
     fcl::DistanceResultd result;
     const double distance_m =
-        fcl::distance(&piece.geometry, piece.pose, &part.geometry(), part.pose(), request, result);
+        fcl::distance(&piece.geometry, piece.pose, &target.geometry, target.pose, request, result);
     Answer answer{distance_m > 0 ? distance_m : 0, 0};  // what is no number is contact, too
     const Eigen::Vector3d line = result.nearest_points[1] - result.nearest_points[0];
     const double length_m = line.norm();
-    if (length_m > 0 && !part.is_mesh()) {
+    if (length_m > 0 && !target.is_mesh) {
         const Eigen::Vector3d n = line / length_m;
         const auto half_along = [&n](const fcl::CollisionGeometryd& shape, const Pose& at) {
             return half_extent_m(shape, at.linear().transpose() * n);
         };
-        answer.proven_m = n.dot(part.pose().translation() - piece.pose.translation()) -
-                          half_along(piece.geometry, piece.pose) - half_along(part.geometry(), part.pose());
+        answer.proven_m = n.dot(target.pose.translation() - piece.pose.translation()) -
+                          half_along(piece.geometry, piece.pose) - half_along(target.geometry, target.pose);
     }
     return answer;
 }
 
 /// The distance of two solids [m], 0 on contact.
-double distance_m(FclSolver solver, const PlacedPiece& piece, const Part& part) {
+double measured_m(FclSolver solver, const PlacedPiece& piece, const Target& target) {
     const fcl::GJKSolverType first_solver = solver_of(solver);
-    const Answer first = answer_of(first_solver, piece, part);
+    const Answer first = answer_of(first_solver, piece, target);
     if (solver != FclSolver::both) {
         return first.distance_m;
     }
@@ -292,63 +325,54 @@ double distance_m(FclSolver solver, const PlacedPiece& piece, const Part& part) 
     if (is_trusted) {
         return first.distance_m;
     }
-    if (are_in_contact(first_solver, piece.geometry, piece.pose, part)) {
+    if (are_in_contact(first_solver, piece.geometry, piece.pose, target)) {
         return 0;
     }
-    const Answer second = answer_of(fcl::GST_INDEP, piece, part);
+    const Answer second = answer_of(fcl::GST_INDEP, piece, target);
     return std::max({std::min(first.distance_m, second.distance_m), first.proven_m, second.proven_m, contact_m});
 }
 
-bool are_nearer(FclSolver solver, const PlacedPiece& piece, const Part& part, double margin_m) {
+bool is_within(FclSolver solver, const PlacedPiece& piece, const Target& target, double margin_m) {
     const fcl::GJKSolverType first = solver_of(solver);
     if (margin_m <= contact_m) {
-        return are_in_contact(first, piece.geometry, piece.pose, part);
+        return are_in_contact(first, piece.geometry, piece.pose, target);
     }
-    if (!may_be_nearer(first, piece, part, margin_m)) {
+    if (!may_be_nearer(first, piece, target, margin_m)) {
         return false;
     }
-    return grows_exactly(piece) || distance_m(solver, piece, part) < margin_m;
+    return grows_exactly(piece) || measured_m(solver, piece, target) < margin_m;
 }
 
 }  // namespace
 
 struct FclDistances::Solids {
     std::shared_ptr<const Scene> scene;
-    PlaneOfMotion plane;
     FclSolver solver;
     std::deque<Part> parts;
     fcl::DynamicAABBTreeCollisionManagerd tree;
     std::vector<Piece> pieces;
-    Eigen::Vector3d joint_m;
-    double reach_m = 0;  ///< of all pieces from the centre of mass
+    double reach_m = 0;  ///< of all pieces from the origin of frame 0
 
     void add_parts();
-    void add_part(const Primitive& primitive, const Pose& pose) {
-        const auto [geometry, at] = placed_solid(primitive, pose);
+    void add_part(const SpaceShape& shape, const Pose& pose) {
+        const auto [geometry, at] = placed_solid(shape, pose);
         parts.emplace_back(geometry, at);
     }
     /// Neighbours become a part together. @param some of all; changes their order
     void add_triangles(const std::vector<Triangle>& all, std::span<std::uint32_t> some);
-    void add_pieces(const RobotShape& robot);
+    void add_pieces(const std::vector<FramedSolid>& solids);
 
-    Pose frame_at(const Eigen::Vector3d& origin_m, double angle_rad) const {
-        const auto [sine, cosine] = lane::sin_cos(angle_rad);
-        const double c = plane.cos_heading(), s = plane.sin_heading();
-        Pose pose = Pose::Identity();
-        pose.linear() << c * cosine, -s, c * sine, s * cosine, c, s * sine, -sine, 0, cosine;
-        pose.translation() = origin_m;
-        return pose;
+    PlacedPiece placed(const Piece& piece, std::span<const RobotFrame> frames) const {
+        const RobotFrame& frame = frames[piece.frame];
+        const Pose at = pose_of(frame.rotation, frame.origin_m) * piece.pose;
+        return {*piece.geometry, at, box_around(*piece.geometry, at)};
     }
 
-    /// Calls `visit(piece placed in the world)` until it returns true; whether it did.
+    /// Calls `visit(piece placed in the world, its frame)` until it returns true; whether it did.
     template <class Visit>
-    bool any_piece(const PlanarPose& pose, const Visit& visit) const {
-        const Pose body = frame_at(vector_of(plane.to_world(pose.x_m, pose.lateral_m, pose.z_m)), pose.pitch_rad);
-        const Pose arm = frame_at(body * joint_m, pose.pitch_rad + pose.arm_rad);
-        return std::any_of(pieces.begin(), pieces.end(), [&](const Piece& piece) {
-            const Pose at = (piece.is_arm ? arm : body) * piece.pose;
-            return visit(PlacedPiece{*piece.geometry, at, box_around(*piece.geometry, at)});
-        });
+    bool any_piece(std::span<const RobotFrame> frames, const Visit& visit) const {
+        return std::any_of(pieces.begin(), pieces.end(),
+                           [&](const Piece& piece) { return visit(placed(piece, frames), piece.frame); });
     }
 
     /// Calls `visit(part)` for parts whose boxes come within `near_m` of a box, until it returns true; whether it did.
@@ -370,8 +394,7 @@ struct FclDistances::Solids {
     }
 
     /// Whether the box that holds the robot at any attitude keeps `margin_m` from every obstacle.
-    bool is_far_away(const PlanarPose& pose, double margin_m) const {
-        const Vector3 center_m = plane.to_world(pose.x_m, pose.lateral_m, pose.z_m);
+    bool is_far_away(const Vector3& center_m, double margin_m) const {
         const fcl::AABBd center(vector_of(center_m));
         return !any_part_near(center, reach_m + margin_m, [](const Part&) { return true; }) &&
                !is_inside_mesh(center_m);
@@ -393,7 +416,8 @@ struct FclDistances::Solids {
                 auto& self = *static_cast<Query*>(query);
                 const Part& part = Part::of(a->getUserData() != nullptr ? *a : *b);
                 if (self.piece->box.distance(part.box()) < self.least_m) {
-                    self.least_m = std::min(self.least_m, distance_m(self.solids->solver, *self.piece, part));
+                    self.least_m =
+                        std::min(self.least_m, measured_m(self.solids->solver, *self.piece, target_of(part)));
                 }
                 bound_m = self.least_m;
                 return self.least_m <= 0;
@@ -410,7 +434,8 @@ void FclDistances::Solids::add_parts() {
     const Parts& placed = scene->solids().parts;
     for (std::size_t i = 0; i < placed.primitives.size(); ++i) {
         const Placement& placement = placed.primitive_placements[i];
-        add_part(placed.primitives[i], pose_of(placement.rotation, placed.primitive_centers_m[i]));
+        const Pose pose = pose_of(placement.rotation, placed.primitive_centers_m[i]);
+        std::visit([&](const auto& primitive) { add_part(primitive, pose); }, placed.primitives[i]);
     }
     for (const OctreeBox& box : placed.octree_boxes) {
         add_part(Box{box.size_m}, pose_of(placed.octree_placements[box.turned].rotation, box.center_m));
@@ -450,32 +475,22 @@ void FclDistances::Solids::add_triangles(const std::vector<Triangle>& all, std::
     add_triangles(all, {middle, some.end()});
 }
 
-void FclDistances::Solids::add_pieces(const RobotShape& robot) {
-    for (const BodyShape& body : robot.bodies) {
+void FclDistances::Solids::add_pieces(const std::vector<FramedSolid>& solids) {
+    for (const FramedSolid& framed : solids) {
         Pose pose = Pose::Identity();
-        pose.translation() = vector_of(body.center_body_m);
-        const auto [geometry, at] = placed_solid(body.shape, pose);
-        pieces.push_back({geometry, at});
-    }
-    Pose along_x = Pose::Identity();
-    along_x.linear() << 0, 0, 1, 0, 1, 0, -1, 0, 0;
-    along_x.translation() = Eigen::Vector3d(0.5 * robot.arm_length_m, 0, 0);
-    pieces.push_back({std::make_shared<fcl::Capsuled>(robot.arm_radius_m, robot.arm_length_m), along_x, true});
-    joint_m = {robot.joint_x_m, 0, robot.joint_z_m};
-    for (const Piece& piece : pieces) {
-        piece.geometry->computeLocalAABB();
-        const fcl::AABBd box = box_around(*piece.geometry, piece.pose);
-        reach_m = std::max(
-            reach_m, (piece.is_arm ? joint_m.norm() : 0) + box.min_.cwiseAbs().cwiseMax(box.max_.cwiseAbs()).norm());
+        pose.translation() = vector_of(framed.solid.center_m);
+        const auto [geometry, at] = placed_solid(framed.solid.shape, pose);
+        geometry->computeLocalAABB();
+        pieces.push_back({geometry, at, framed.frame});
     }
 }
 
-FclDistances::FclDistances(const std::shared_ptr<const Scene>& scene, const PlaneOfMotion& plane,
-                           const RobotShape& robot, FclSolver solver) {
+FclDistances::FclDistances(const std::shared_ptr<const Scene>& scene, const std::vector<FramedSolid>& robot,
+                           double reach_m, FclSolver solver) {
     auto solids = std::make_unique<Solids>();
     solids->scene = scene;
-    solids->plane = plane;
     solids->solver = solver;
+    solids->reach_m = reach_m;
     solids->add_parts();
     solids->add_pieces(robot);
     solids_ = std::move(solids);
@@ -483,23 +498,39 @@ FclDistances::FclDistances(const std::shared_ptr<const Scene>& scene, const Plan
 
 FclDistances::~FclDistances() = default;
 
-bool FclDistances::is_nearer_than(const PlanarPose& pose, double margin_m) const {
+bool FclDistances::is_nearer_than(std::span<const RobotFrame> frames, std::span<const double> margins_m) const {
     const Solids& s = *solids_;
-    const double near_m = std::max(margin_m, contact_m);
-    return !s.is_far_away(pose, near_m) && s.any_piece(pose, [&](const PlacedPiece& piece) {
-        return s.any_part_near(piece.box, near_m, [&](const Part& part) {
-            return are_nearer(s.solver, piece, part, near_m);
-        }) || s.is_inside_mesh(piece);
-    });
+    const double most_m = std::max(*std::max_element(margins_m.begin(), margins_m.end()), contact_m);
+    return !s.is_far_away(frames[0].origin_m, most_m) &&
+           s.any_piece(frames, [&](const PlacedPiece& piece, std::size_t frame) {
+               const double near_m = std::max(margins_m[frame], contact_m);
+               return s.any_part_near(piece.box, near_m, [&](const Part& part) {
+                   return is_within(s.solver, piece, target_of(part), near_m);
+               }) || s.is_inside_mesh(piece);
+           });
 }
 
-double FclDistances::clearance_m(const PlanarPose& pose) const {
-    double least_m = infinity;
-    solids_->any_piece(pose, [&](const PlacedPiece& piece) {
+double FclDistances::clearance_m(std::span<const RobotFrame> frames, double enough_m) const {
+    double least_m = enough_m;
+    solids_->any_piece(frames, [&](const PlacedPiece& piece, std::size_t) {
         least_m = solids_->clearance_m(piece, least_m);
         return least_m <= 0;
     });
     return least_m;
+}
+
+bool FclDistances::are_nearer(std::span<const RobotFrame> frames, std::size_t first, std::size_t second,
+                              double margin_m) const {
+    const PlacedPiece a = solids_->placed(solids_->pieces[first], frames);
+    const PlacedPiece b = solids_->placed(solids_->pieces[second], frames);
+    const double near_m = std::max(margin_m, contact_m);
+    return a.box.distance(b.box) <= near_m && is_within(solids_->solver, a, Target{b.geometry, b.pose}, near_m);
+}
+
+double FclDistances::distance_m(std::span<const RobotFrame> frames, std::size_t first, std::size_t second) const {
+    const PlacedPiece a = solids_->placed(solids_->pieces[first], frames);
+    const PlacedPiece b = solids_->placed(solids_->pieces[second], frames);
+    return measured_m(solids_->solver, a, Target{b.geometry, b.pose});
 }
 
 }  // namespace downwash

@@ -2,12 +2,14 @@
 
 // Private to scene/: collisions and clearances by FCL. Only fcl_distances.cpp sees FCL's headers.
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "downwash/base/export.hpp"
-#include "downwash/scene/planar_pose.hpp"
-#include "downwash/scene/plane_of_motion.hpp"
+#include "downwash/scene/robot_solids.hpp"
 #include "downwash/scene/scene.hpp"
 
 namespace downwash {
@@ -28,16 +30,26 @@ enum class FclSolver : std::uint8_t {
 /// bounds the distance from below, is as wide. Otherwise the other solver is asked, and the lesser distance counts.
 class FclDistances {
  public:
-    /// @pre CollisionChecker takes the robot
-    DOWNWASH_EXPORT FclDistances(const std::shared_ptr<const Scene>& scene, const PlaneOfMotion& plane,
-                                 const RobotShape& robot, FclSolver solver = FclSolver::both);
+    /// @param reach_m no point of the solids is farther from the origin of frame 0 @pre a checker takes the solids
+    DOWNWASH_EXPORT FclDistances(const std::shared_ptr<const Scene>& scene, const std::vector<FramedSolid>& solids,
+                                 double reach_m, FclSolver solver = FclSolver::both);
     DOWNWASH_EXPORT ~FclDistances();
     FclDistances(const FclDistances&) = delete;
     FclDistances& operator=(const FclDistances&) = delete;
 
-    /// As of CollisionChecker, both to what FCL can tell. @pre the pose is finite
-    [[nodiscard]] DOWNWASH_EXPORT bool is_nearer_than(const PlanarPose& pose, double margin_m) const;
-    [[nodiscard]] DOWNWASH_EXPORT double clearance_m(const PlanarPose& pose) const;
+    // As of the checkers, to what FCL can tell. @pre every number is finite
+
+    /// Whether a solid is nearer to an obstacle than the margin of its frame [m].
+    [[nodiscard]] DOWNWASH_EXPORT bool is_nearer_than(std::span<const RobotFrame> frames,
+                                                      std::span<const double> margins_m) const;
+    /// The least distance of a solid to an obstacle if it is below `enough_m`, else `enough_m`; 0 on contact.
+    [[nodiscard]] DOWNWASH_EXPORT double clearance_m(std::span<const RobotFrame> frames, double enough_m) const;
+    /// Whether two of the robot's solids, by their numbers, are nearer to each other than a margin.
+    [[nodiscard]] DOWNWASH_EXPORT bool are_nearer(std::span<const RobotFrame> frames, std::size_t first,
+                                                  std::size_t second, double margin_m) const;
+    /// The distance of two of the robot's solids [m]; 0 on contact.
+    [[nodiscard]] DOWNWASH_EXPORT double distance_m(std::span<const RobotFrame> frames, std::size_t first,
+                                                    std::size_t second) const;
 
  private:
     struct Solids;

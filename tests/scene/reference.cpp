@@ -152,7 +152,10 @@ downwash::Shape shape_of(const downwash::Primitive& primitive) {
     return std::visit([](const auto& solid) { return downwash::Shape(solid); }, primitive);
 }
 
-downwash::Primitive primitive_of(const downwash::Shape& shape) {
+namespace {
+
+template <class AnyShape>
+downwash::Primitive primitive_in(const AnyShape& shape) {
     if (const auto* box = std::get_if<downwash::Box>(&shape)) {
         return *box;
     }
@@ -160,6 +163,12 @@ downwash::Primitive primitive_of(const downwash::Shape& shape) {
         return *cylinder;
     }
     return std::get<downwash::Sphere>(shape);
+}
+
+}  // namespace
+
+downwash::Primitive primitive_of(const downwash::Shape& shape) {
+    return primitive_in(shape);
 }
 
 Solid solid_of(const downwash::Obstacle& obstacle) {
@@ -200,6 +209,75 @@ std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::Pl
     solids.push_back(
         {Solid::Kind::cylinder, plus(joint, half, arm), axes_along(arm), {0, 0, half}, robot.arm_radius_m});
     return solids;
+}
+
+Vector3 Frame::turned(const Vector3& v) const {
+    return plus(plus(plus({0, 0, 0}, v[0], axes[0]), v[1], axes[1]), v[2], axes[2]);
+}
+
+Vector3 Frame::placed(const Vector3& p_m) const {
+    return plus(origin_m, 1, turned(p_m));
+}
+
+std::vector<Frame> frames_at(const downwash::SpacePose& pose, const downwash::SpaceRobotShape& robot) {
+    /// v turned about a vector of length 1 by an angle with this cosine and sine.
+    const auto turned_about = [](const Vector3& axis, double cosine, double sine, const Vector3& v) {
+        const Vector3 across = plus(v, -dot(axis, v), axis);
+        return plus(plus(plus(v, -1, across), cosine, across), sine, cross(axis, v));
+    };
+    const auto& q = pose.attitude;
+    const Vector3 vector{q[1], q[2], q[3]};
+    const double half = std::atan2(norm(vector), q[0]);
+    const Vector3 axis = norm(vector) > 0 ? plus({0, 0, 0}, 1 / norm(vector), vector) : Vector3{1, 0, 0};
+    std::vector<Frame> frames(1);
+    frames[0].origin_m = pose.position_m;
+    for (std::size_t k = 0; k < 3; ++k) {
+        Vector3 own{0, 0, 0};
+        own[k] = 1;
+        frames[0].axes[k] = turned_about(axis, std::cos(2 * half), std::sin(2 * half), own);
+    }
+    for (std::size_t i = 0; i < robot.links.size(); ++i) {
+        const downwash::SpaceLinkShape& link = robot.links[i];
+        const Frame on = frames.back();
+        const Vector3 hinge = plus({0, 0, 0}, 1 / norm(link.axis), on.turned(link.axis));
+        Frame frame = on;
+        frame.origin_m = on.placed(link.joint_m);
+        for (Vector3& own : frame.axes) {
+            own = turned_about(hinge, std::cos(pose.joints_rad[i]), std::sin(pose.joints_rad[i]), own);
+        }
+        frames.push_back(frame);
+    }
+    return frames;
+}
+
+std::vector<std::vector<Solid>> bodies_at(const downwash::SpacePose& pose, const downwash::SpaceRobotShape& robot) {
+    const std::vector<Frame> frames = frames_at(pose, robot);
+    std::vector<std::vector<Solid>> bodies(frames.size());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        for (const downwash::SpaceBodyShape& body : i == 0 ? robot.bodies : robot.links[i - 1].bodies) {
+            const Frame frame{frames[i].axes, frames[i].placed(body.center_m)};
+            if (const auto* capsule = std::get_if<downwash::Capsule>(&body.shape)) {
+                const Vector3 from = frame.placed(capsule->from_m), line = plus(frame.placed(capsule->to_m), -1, from);
+                bodies[i].push_back({Solid::Kind::cylinder,
+                                     plus(from, 0.5, line),
+                                     axes_along(norm(line) > 0 ? line : Vector3{0, 0, 1}),
+                                     {0, 0, norm(line) / 2},
+                                     capsule->radius_m});
+            } else {
+                const downwash::Primitive primitive = primitive_in(body.shape);
+                bodies[i].push_back(reference::placed(primitive, frame.origin_m, frame.axes));
+            }
+        }
+    }
+    return bodies;
+}
+
+std::vector<Solid> robot_at(const downwash::SpacePose& pose, const downwash::SpaceRobotShape& robot) {
+    std::vector<Solid> all;
+    for (const std::vector<Solid>& body : bodies_at(pose, robot)) {
+        all.insert(all.end(), body.begin(), body.end());
+    }
+    return all;
 }
 
 Enclosure clearance(const std::vector<Solid>& robot, const std::vector<Solid>& solids) {
@@ -305,6 +383,45 @@ downwash::RobotShape Dice::robot() {
             between(-0.1, 0.1),
             between(0.1, 0.7),
             between(0.01, 0.05)};
+}
+
+downwash::SpaceRobotShape Dice::space_robot(int links) {
+    const auto widened = [](const downwash::Primitive& primitive) {
+        return std::visit([](const auto& solid) { return downwash::SpaceShape(solid); }, primitive);
+    };
+    downwash::SpaceRobotShape robot;
+    robot.bodies = {{widened(shape(0.05, 0.5)), vector(-0.1, 0.1)}, {widened(shape(0.05, 0.3)), vector(-0.3, 0.3)}};
+    for (int i = 0; i < links; ++i) {
+        downwash::SpaceLinkShape link;
+        link.joint_m = vector(-0.25, 0.25);
+        link.axis = vector(-1, 1);
+        link.bodies = {coin() ? downwash::SpaceBodyShape{widened(shape(0.05, 0.2)), vector(-0.1, 0.1)}
+                              : downwash::SpaceBodyShape{
+                                    downwash::Capsule{between(0.01, 0.05), vector(-0.1, 0.1), vector(-0.3, 0.3)},
+                                    vector(-0.05, 0.05)}};
+        robot.links.push_back(link);
+    }
+    return robot;
+}
+
+downwash::SpacePose Dice::space_pose() {
+    downwash::SpacePose pose;
+    pose.position_m = vector(-2.5, 2.5);
+    double squared = 0;
+    do {  // evenly over all rotations
+        pose.attitude = {between(-1, 1), between(-1, 1), between(-1, 1), between(-1, 1)};
+        squared = 0;
+        for (const double number : pose.attitude) {
+            squared += number * number;
+        }
+    } while (squared > 1 || squared < 0.01);
+    for (double& number : pose.attitude) {
+        number /= std::sqrt(squared);
+    }
+    for (double& angle : pose.joints_rad) {
+        angle = between(-3.14, 3.14);
+    }
+    return pose;
 }
 
 downwash::PlanarPose Dice::pose() {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "downwash/scene/collision_checker.hpp"
+#include "downwash/scene/space_checker.hpp"
 
 namespace reference {
 
@@ -56,6 +57,21 @@ Solid triangle(const std::array<Vector3, 3>& corners_m);
 Solid disc(const Vector3& center_m, double radius_m);
 std::vector<Solid> robot_at(const downwash::PlanarPose& pose, const downwash::PlaneOfMotion& plane,
                             const downwash::RobotShape& robot);
+
+/// Axes and origin of a body in the world.
+struct Frame {
+    std::array<Vector3, 3> axes;
+    Vector3 origin_m;
+
+    [[nodiscard]] Vector3 turned(const Vector3& v) const;
+    [[nodiscard]] Vector3 placed(const Vector3& p_m) const;
+};
+/// Of the multirotor, then of each link.
+std::vector<Frame> frames_at(const downwash::SpacePose& pose, const downwash::SpaceRobotShape& robot);
+/// The solids of each body: of the multirotor, then of each link.
+std::vector<std::vector<Solid>> bodies_at(const downwash::SpacePose& pose, const downwash::SpaceRobotShape& robot);
+std::vector<Solid> robot_at(const downwash::SpacePose& pose, const downwash::SpaceRobotShape& robot);
+
 Enclosure clearance(const std::vector<Solid>& robot, const std::vector<Solid>& solids);
 Enclosure clearance(const std::vector<Solid>& robot, const std::vector<downwash::Obstacle>& obstacles);
 
@@ -83,7 +99,11 @@ class Dice {
     downwash::Obstacle gridded_obstacle();
     std::vector<downwash::Obstacle> obstacles(int count);
     downwash::RobotShape robot();
+    /// Half of its solids on links are capsules.
+    downwash::SpaceRobotShape space_robot(int links);
     downwash::PlanarPose pose();
+    /// Any attitude, joint angles of up to half a turn.
+    downwash::SpacePose space_pose();
     downwash::PlaneOfMotion plane();
 
  private:

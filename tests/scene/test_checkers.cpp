@@ -14,6 +14,7 @@
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/scene/fcl_distances.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
+#include "downwash/scene/space_checker.hpp"
 #include "reference.hpp"
 
 using namespace downwash;
@@ -140,11 +141,14 @@ TEST_CASE("where one of FCL's solvers is off by more than a millimetre the refer
         const CollisionChecker own(scene, problem.plane, problem.robot.shape());
         const std::vector<reference::Solid> solids = solids_of(problem);
         for (const FclSolver solver : {FclSolver::libccd, FclSolver::indep}) {
-            const FclDistances fcl(scene, problem.plane, problem.robot.shape(), solver);
+            const RobotShape shape = problem.robot.shape();
+            const FclDistances fcl(scene, solids_of(shape), own.robot_reach_m(), solver);
             int faults = 0;
             double worst_m = 0;
             each_pose(problem, [&](const PlanarPose& pose) {
-                const double expected_m = std::max(0.0, own.clearance_m(pose)), found_m = fcl.clearance_m(pose);
+                const double expected_m = std::max(0.0, own.clearance_m(pose));
+                const double found_m = fcl.clearance_m(
+                    planar_frames(problem.plane, {shape.joint_x_m, 0, shape.joint_z_m}, pose), INFINITY);
                 if (std::isinf(expected_m) ? found_m == expected_m : std::abs(found_m - expected_m) < allowed_m) {
                     return;
                 }
@@ -187,6 +191,78 @@ TEST_CASE("FCL's checker and our own agree in random scenes of turned solids, wh
     }
     CHECK(contacts > 300);
     CHECK(free > 300);
+}
+
+namespace {
+
+/// A sheet of metal that is bent, boxes, a pipe and a scan.
+std::vector<Obstacle> mixed_obstacles(reference::Dice& dice) {
+    std::vector<Obstacle> obstacles = dice.obstacles(4);
+    obstacles.push_back({"pipe", test::pipe_mesh(0.3, 2, 40, 20), {1, 0.5, 0}, {0.4, 1.3, 0.2}});
+    obstacles.push_back({"box", test::box_mesh({0.5, 0.8, 0.3}), {-1, -1, 0.5}, {0.1, 0.2, 0.3}});
+    const auto is_in_ball = [](const Vector3& p) { return dot(p, p) < 0.2; };
+    obstacles.push_back({"scan",
+                         test::octree_of(is_in_ball, {-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, 0.125),
+                         {-1, 1, -1},
+                         {0.3, 0.2, 0.1}});
+    return obstacles;
+}
+
+/// A body, rotor discs around it and an arm under it, whose joints turn about y, x and y.
+SpaceRobotShape multirotor(int rotors, int links) {
+    SpaceRobotShape robot;
+    robot.bodies = {{Box{{0.25, 0.2, 0.12}}, {}}};
+    for (int i = 0; i < rotors; ++i) {
+        const double angle = 2 * 3.14159265358979323846 * (i + 0.5) / rotors;
+        robot.bodies.push_back(
+            {Cylinder{0.09, 0.02, {0, 0, 1}}, {0.25 * std::cos(angle), 0.25 * std::sin(angle), 0.05}});
+    }
+    for (int i = 0; i < links; ++i) {
+        SpaceLinkShape link;
+        link.joint_m = {0, 0, i == 0 ? -0.08 : -0.22};
+        link.axis = i == 1 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
+        link.bodies = {{Capsule{0.02, {0, 0, 0}, {0, 0, -0.22}}, {}}};
+        robot.links.push_back(link);
+    }
+    return robot;
+}
+
+}  // namespace
+
+TEST_CASE("FCL's checker and our own agree about robots in space at any attitude") {
+    reference::Dice dice(62);
+    const auto scene = std::make_shared<const Scene>(mixed_obstacles(dice));
+    for (const SpaceRobotShape& robot : {multirotor(4, 0), multirotor(6, 3), dice.space_robot(3)}) {
+        const std::size_t links = robot.links.size();
+        const SpaceChecker own(scene, robot);
+        const SpaceChecker fcl(scene, robot, CollisionCheckerKind::fcl);
+        CHECK(fcl.kind() == CollisionCheckerKind::fcl);
+        int contacts = 0, free = 0, folded = 0;
+        for (int i = 0; i < 10000; ++i) {
+            SpacePose pose = dice.space_pose();
+            pose.position_m = 0.6 * pose.position_m;
+            const double expected_m = own.clearance_m(pose), found_m = fcl.clearance_m(pose);
+            const double itself_m = own.self_clearance_m(pose, 1), its_m = fcl.self_clearance_m(pose, 1);
+            CAPTURE(links, i, expected_m, found_m, itself_m, its_m);
+            const bool is_certain = itself_m <= 0 || itself_m > resolved_m;
+            CHECK(std::abs(std::max(0.0, its_m) - std::max(0.0, itself_m)) < allowed_m);
+            if (is_certain) {
+                CHECK(std::abs(std::max(0.0, found_m) - std::max(0.0, expected_m)) < allowed_m);
+                CHECK(fcl.touching_bodies(pose).has_value() == own.touching_bodies(pose).has_value());
+            }
+            for (const double margin_m : {0.0, 0.05}) {
+                if (is_certain && (expected_m <= 0 || std::abs(expected_m - margin_m) > resolved_m)) {
+                    CAPTURE(margin_m);
+                    CHECK(fcl.is_nearer_than(pose, margin_m) == own.is_nearer_than(pose, margin_m));
+                }
+            }
+            (expected_m <= 0 ? contacts : free) += 1;
+            folded += itself_m <= 0;
+        }
+        CHECK(contacts > 1000);
+        CHECK(free > 1000);
+        CHECK((folded > 500) == (links > 0));
+    }
 }
 
 TEST_CASE("FCL's checker keeps the contract: closed meshes have an inside, and a pose that is not finite touches") {
