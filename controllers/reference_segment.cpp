@@ -98,22 +98,10 @@ ReferenceSegment::ReferenceSegment(const ReferencePoint& from, const ReferencePo
       duration_s_(static_cast<double>(ticks) * tick_s),
       inverse_duration_1_s_(1 / duration_s_) {
     assert(ticks >= 1 && tick_s > 0);
-    const double t = duration_s_;
     for (std::size_t axis = 0; axis < max_axes; ++axis) {
-        // Hermite conditions at both ends, in the powers of the normalised time (Taylor terms p, v T, a T^2 / 2).
-        const double p = from.position[axis];
-        const double v0 = from.velocity[axis] * t;
-        const double a0 = from.acceleration[axis] * t * t;
-        const double v1 = to.velocity[axis] * t;
-        const double a1 = to.acceleration[axis] * t * t;
-        const double d = to.position[axis] - p;
-        double* c = coefficient_[axis];
-        c[0] = p;
-        c[1] = v0;
-        c[2] = 0.5 * a0;
-        c[3] = 10 * d - 6 * v0 - 4 * v1 - 1.5 * a0 + 0.5 * a1;
-        c[4] = -15 * d + 8 * v0 + 7 * v1 + 1.5 * a0 - a1;
-        c[5] = 6 * d - 3 * (v0 + v1) - 0.5 * (a0 - a1);
+        controllers::quintic_between<double>({from.position[axis], from.velocity[axis], from.acceleration[axis]},
+                                             {to.position[axis], to.velocity[axis], to.acceleration[axis]}, duration_s_,
+                                             coefficient_[axis]);
     }
 }
 
