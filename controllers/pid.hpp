@@ -24,6 +24,13 @@ T integrate(double ki, double limit, T integral, T error, T dt_s) {
     return lane::clamp(integral + error * dt_s, -most, most);
 }
 
+/// The same, or the integral as it was where a condition holds (anti-windup).
+/// @param is_frozen of the lane type that lane::select() takes for T
+template <class T, class Condition>
+T integral_unless(const Condition& is_frozen, double ki, double limit, T integral, T error, T dt_s) {
+    return lane::select(is_frozen, integral, integrate(ki, limit, integral, error, dt_s));
+}
+
 /// The error that makes a gain give an action; infinite without a gain.
 inline double error_for(double action, double gain) {
     return action == 0 ? 0 : action / gain;

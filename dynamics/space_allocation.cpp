@@ -37,15 +37,27 @@ bool solve(double (&g)[4][4], double (&b)[4]) {
     return true;
 }
 
+/// The direction of the force of a lift without torque.
+LaneVector<double> lift_axis_of(const SpaceAllocation& allocation, const SpaceRotorNumbers<double>* rotors) {
+    LaneVector<double> force{0, 0, 0};
+    for (int i = 0; i < allocation.rotor_count; ++i) {
+        force = force + allocation.share[i][0] * rotors[i].axis;
+    }
+    const auto without_rounding = [](double side) { return std::abs(side) < 1e-12 ? 0 : side; };
+    const LaneVector<double> axis{without_rounding(force.x), without_rounding(force.y), 1};  // the lift is 1
+    return (1 / std::sqrt(dot(axis, axis))) * axis;
+}
+
 }  // namespace
 
-SpaceAllocation make_space_allocation(const SpaceModel<0>& model) {
+SpaceAllocation make_space_allocation(int rotor_count, const SpaceRotorNumbers<double>* rotors) {
     SpaceAllocation allocation{};
-    allocation.rotor_count = model.rotor_count;
+    allocation.rotor_count = rotor_count;
+    allocation.lift_axis = {0, 0, 1};
     double row[4][max_rotors] = {};
     double size[4] = {};
-    for (int i = 0; i < model.rotor_count; ++i) {
-        const auto& rotor = model.rotor[i];
+    for (int i = 0; i < rotor_count; ++i) {
+        const auto& rotor = rotors[i];
         const LaneVector<double> torque = cross(rotor.position_m, rotor.axis) + rotor.reaction_m * rotor.axis;
         const double column[4] = {rotor.axis.z, torque.x, torque.y, torque.z};
         for (int k = 0; k < 4; ++k) {
@@ -56,7 +68,7 @@ SpaceAllocation make_space_allocation(const SpaceModel<0>& model) {
     // Rows of length 1, so that the rank does not depend on units.
     for (int k = 0; k < 4; ++k) {
         size[k] = std::sqrt(size[k]);
-        for (int i = 0; i < model.rotor_count; ++i) {
+        for (int i = 0; i < rotor_count; ++i) {
             row[k][i] = size[k] > 0 ? row[k][i] / size[k] : 0;
         }
     }
@@ -64,7 +76,7 @@ SpaceAllocation make_space_allocation(const SpaceModel<0>& model) {
         double gram[4][4] = {};
         for (int k = 0; k < 4; ++k) {
             for (int j = 0; j < 4; ++j) {
-                for (int i = 0; i < model.rotor_count; ++i) {
+                for (int i = 0; i < rotor_count; ++i) {
                     gram[k][j] += row[k][i] * row[j][i];
                 }
             }
@@ -72,15 +84,16 @@ SpaceAllocation make_space_allocation(const SpaceModel<0>& model) {
         double weight[4] = {};
         weight[demand] = size[demand] > 0 ? 1 / size[demand] : 0;
         if (!solve(gram, weight)) {
-            return SpaceAllocation{false, model.rotor_count, {}};
+            return SpaceAllocation{false, rotor_count, {}, {0, 0, 1}};
         }
-        for (int i = 0; i < model.rotor_count; ++i) {
+        for (int i = 0; i < rotor_count; ++i) {
             for (int k = 0; k < 4; ++k) {
                 allocation.share[i][demand] += row[k][i] * weight[k];
             }
         }
     }
     allocation.has_full_rank = true;
+    allocation.lift_axis = lift_axis_of(allocation, rotors);
     return allocation;
 }
 

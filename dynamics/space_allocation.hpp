@@ -13,10 +13,21 @@ struct SpaceAllocation {
     bool has_full_rank;  ///< whether lift and the three torques can be commanded apart; else the shares are 0
     int rotor_count;
     double share[max_rotors][4];
+    /// Where the force of a lift without torque points, body axes, of length 1: b3, exactly so where tilts cancel.
+    /// Without full rank b3.
+    dynamics::LaneVector<double> lift_axis;
 };
 
 /// The allocation of a plant in free air (thesis (4.15), inverted for any layout).
-[[nodiscard]] DOWNWASH_EXPORT SpaceAllocation make_space_allocation(const SpaceModel<0>& model);
+/// @param rotors `rotor_count` of them
+[[nodiscard]] DOWNWASH_EXPORT SpaceAllocation make_space_allocation(int rotor_count,
+                                                                    const SpaceRotorNumbers<double>* rotors);
+
+/// The allocation of a plant with any arm.
+template <int n>
+[[nodiscard]] SpaceAllocation make_space_allocation(const SpaceModel<n>& model) {
+    return make_space_allocation(model.rotor_count, model.rotor);
+}
 
 namespace dynamics {
 
