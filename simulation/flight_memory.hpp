@@ -19,13 +19,23 @@ struct FlightMemory : WorldMemory<double> {
     std::vector<PastMotion<double>> older;
 };
 
+/// A delay in ticks. A long one that is a whole number of ticks but for rounding is just that: no state is remembered
+/// for a share of nothing.
+[[nodiscard]] inline double delay_ticks(double delay_s, double rate_hz) noexcept {
+    const double ticks = delay_s * rate_hz;
+    const double whole = std::round(ticks);
+    return ticks > recent_ticks && std::abs(ticks - whole) <= 1e-9 * whole ? whole : ticks;
+}
+
 /// How many older motions a delay needs.
 [[nodiscard]] inline std::size_t older_ticks(double delay_ticks) noexcept {
     return delay_ticks > recent_ticks ? static_cast<std::size_t>(std::ceil(delay_ticks)) - recent_ticks : 0;
 }
 
 /// Where the vehicle was so many ticks ago, from 1 on. Before what is remembered it was always in the same place.
-[[nodiscard]] inline const PastMotion<double>& past_at(const FlightMemory& memory, int age) noexcept {
+/// @tparam Memory FlightMemory, or that of a flight in space
+template <class Memory>
+[[nodiscard]] const auto& past_at(const Memory& memory, int age) noexcept {
     if (age <= recent_ticks) {
         return memory.past[age - 1];
     }

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <variant>
 
-#include "downwash/base/portable_math.hpp"
+#include "downwash/simulation/gusts.hpp"
 #include "downwash/simulation/noise.hpp"
 
 namespace downwash {
@@ -56,9 +57,8 @@ double pushed_aside_m(const Robot& robot, const World& world) {
     return force_n / (robot.mass_kg() * stiffness_1_s2);
 }
 
-/// The filters of the Dryden model (MIL-F-8785C 3.7.2) sampled at the control ticks without loss, for unit variance.
-/// A gust passes with the steady wind, or with 1 m/s where that is slower: a vehicle that hovers in calm air meets it
-/// as one that flies through it.
+/// The filters of the gusts. A gust passes with the steady wind, or with 1 m/s where that is slower: a vehicle that
+/// hovers in calm air meets it as one that flies through it.
 void set_gusts(const World& world, double tick_s, simulation::WorldNumbers<double>& numbers) {
     if (!(world.gust_m_s > 0)) {
         return;
@@ -67,29 +67,13 @@ void set_gusts(const World& world, double tick_s, simulation::WorldNumbers<doubl
     const double speed_m_s =
         std::max(least_speed_m_s, std::sqrt(world.wind_x_m_s * world.wind_x_m_s + world.wind_z_m_s * world.wind_z_m_s));
     numbers.gust_m_s = world.gust_m_s;
-    const double a = natural_exp(-tick_s * speed_m_s / world.gust_length_x_m);
-    numbers.gust_x_decay = a;
-    numbers.gust_x_noise = std::sqrt(1 - a * a);
-    // y1' = -y1 / tau + w, y2' = (y1 - y2) / tau with covariance P = ((2, 1), (1, 1)) / 4; a tick adds P - F P F^T.
-    const double ticks = tick_s * speed_m_s / world.gust_length_z_m;
-    const double b = natural_exp(-ticks);
-    const double c = b * ticks;
-    numbers.gust_z_decay = b;
-    numbers.gust_z_coupling = c;
-    const double q11 = 0.5 - 0.5 * b * b;
-    const double q21 = 0.25 - (0.5 * b * c + 0.25 * b * b);
-    const double q22 = 0.25 - (0.5 * c * c + 0.5 * b * c + 0.25 * b * b);
-    numbers.gust_z_noise[0] = std::sqrt(q11);
-    numbers.gust_z_noise[1] = q21 / numbers.gust_z_noise[0];
-    numbers.gust_z_noise[2] = std::sqrt(std::max(0.0, q22 - numbers.gust_z_noise[1] * numbers.gust_z_noise[1]));
-}
-
-/// A delay in ticks. A long one that is a whole number of ticks but for rounding is just that: no state is remembered
-/// for a share of nothing.
-double delay_ticks(double delay_s, double rate_hz) {
-    const double ticks = delay_s * rate_hz;
-    const double whole = std::round(ticks);
-    return ticks > simulation::recent_ticks && std::abs(ticks - whole) <= 1e-9 * whole ? whole : ticks;
+    const simulation::GustFilter along = simulation::gust_filter(tick_s * speed_m_s / world.gust_length_x_m);
+    numbers.gust_x_decay = along.decay;
+    numbers.gust_x_noise = along.noise;
+    const simulation::GustPairFilter upward = simulation::gust_pair_filter(tick_s * speed_m_s / world.gust_length_z_m);
+    numbers.gust_z_decay = upward.decay;
+    numbers.gust_z_coupling = upward.coupling;
+    std::copy(std::begin(upward.noise), std::end(upward.noise), numbers.gust_z_noise);
 }
 
 }  // namespace
@@ -110,7 +94,7 @@ FlownWorld make_world(const Robot& robot, const World& world) {
     numbers.ceiling_scale = world.ceiling_scale;
     numbers.scene_x_m = world.scene_x_m;
     numbers.scene_z_m = world.scene_z_m;
-    numbers.delay_ticks = delay_ticks(robot.controller.delay_s + world.delay_s, robot.controller.rate_hz);
+    numbers.delay_ticks = simulation::delay_ticks(robot.controller.delay_s + world.delay_s, robot.controller.rate_hz);
     numbers.position_bias_m[0] = world.position_bias_x_m;
     numbers.position_bias_m[1] = world.position_bias_z_m;
     numbers.pitch_bias_rad = world.pitch_bias_rad;
@@ -146,8 +130,7 @@ simulation::FlightMemory memory_at_start(const FlownWorld& world, const dynamics
         double noise[simulation::noise_count];
         simulation::draw_noise(simulation::normal_levels(), world.world.tape, -1, noise, 1);
         memory.gust[0] = noise[0];
-        memory.gust[1] = std::sqrt(0.5) * noise[1];
-        memory.gust[2] = std::sqrt(0.125) * (noise[1] + noise[2]);
+        simulation::start_gust_pair(noise[1], noise[2], memory.gust + 1);
     }
     return memory;
 }

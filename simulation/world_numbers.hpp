@@ -16,6 +16,12 @@ inline constexpr int recent_ticks = 3;
 /// Standard normal numbers that a world draws for every tick.
 inline constexpr int noise_count = 8;
 
+/// Standard normal numbers that a world in space uses in every tick: position and velocity along x, y and z, the three
+/// body rates, then the gusts: one along their way, two to its left, two upward.
+inline constexpr int space_noise_count = 14;
+/// So many are drawn, five from each 64 random bits.
+inline constexpr int drawn_space_noise_count = 15;
+
 /// Where and how fast the vehicle was.
 template <class T>
 struct PastMotion {

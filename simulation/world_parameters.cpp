@@ -214,7 +214,7 @@ World draw_world(const Uncertainty& uncertainty, const Robot& robot, std::uint64
     for (const WorldParameter& parameter : world_parameters()) {
         bits = simulation::mixed(bits);
         if (parameter.matters_to(robot)) {
-            quantiles.push_back((static_cast<double>(bits >> 11U) + 0.5) * 0x1p-53);
+            quantiles.push_back(simulation::quantile_of(bits));
         }
     }
     return world_at(uncertainty, robot, quantiles, tape);

@@ -3,6 +3,7 @@
 #include "downwash/base/lane_math.hpp"
 #include "downwash/dynamics/plant_state.hpp"
 #include "downwash/simulation/flight_memory.hpp"
+#include "downwash/simulation/gusts.hpp"
 #include "downwash/simulation/world_numbers.hpp"
 
 // What a world does in one tick to what the controller sees, to the air and to its own memory. One template over the
@@ -116,9 +117,8 @@ dynamics::PlantState<T> seen_state(const WorldNumbers<T>& world, const dynamics:
 /// @param gust see WorldMemory
 template <class T>
 dynamics::PlanePoint<T> wind_in(const WorldNumbers<T>& world, const T gust[3]) {
-    constexpr double root3 = 1.7320508075688772;
-    const T along_z = T(root3) * gust[1] + T(1 - root3) * gust[2];
-    return {world.wind_m_s[0] + world.gust_m_s * gust[0], world.wind_m_s[1] + world.gust_m_s * along_z};
+    return {world.wind_m_s[0] + world.gust_m_s * gust[0],
+            world.wind_m_s[1] + world.gust_m_s * gust_across(gust[1], gust[2])};
 }
 template <class T>
 dynamics::PlanePoint<T> wind_in(const WorldNumbers<T>& world, const WorldMemory<T>& memory) {

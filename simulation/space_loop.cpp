@@ -1,0 +1,53 @@
+#include "downwash/simulation/space_loop.hpp"
+
+#include <string>
+#include <utility>
+
+#include "downwash/base/key_error.hpp"
+
+#ifndef DOWNWASH_MAX_JOINTS
+#error "the build says how many joints an arm in space may have"
+#endif
+
+namespace downwash {
+
+int max_built_joints() noexcept {
+    return DOWNWASH_MAX_JOINTS;
+}
+
+namespace simulation {
+
+// space_loop_of.hpp has the arithmetic; this file needs the names alone.
+template <int n>
+std::unique_ptr<SpaceLoop> make_space_loop_of(const SpaceLoopSetup& setup);
+
+namespace {
+
+template <int... n>
+std::unique_ptr<SpaceLoop> made(const SpaceLoopSetup& setup, std::integer_sequence<int, n...> /*built*/) {
+    using Make = std::unique_ptr<SpaceLoop> (*)(const SpaceLoopSetup&);
+    static constexpr Make make[] = {&make_space_loop_of<n>...};
+    return make[setup.robot.joints()](setup);
+}
+
+}  // namespace
+
+SpaceAero space_aero(const AeroSettings& aero, double rotor_radius_m) {
+    if (!aero.enabled) {
+        return {};
+    }
+    return {aero.map ? TiltLoss{} : aero.tilt_loss, aero.wall.force, aero.wall.moment * rotor_radius_m};
+}
+
+std::unique_ptr<SpaceLoop> make_space_loop(const SpaceLoopSetup& setup) {
+    if (setup.robot.joints() > DOWNWASH_MAX_JOINTS) {
+        throw_input_error("has " + std::to_string(setup.robot.joints()) +
+                              " joints, but this build flies arms of up to " + std::to_string(DOWNWASH_MAX_JOINTS) +
+                              ": configure it with -DDOWNWASH_MAX_JOINTS=" + std::to_string(setup.robot.joints()),
+                          "robot.arm");
+    }
+    return made(setup, std::make_integer_sequence<int, DOWNWASH_MAX_JOINTS + 1>());
+}
+
+}  // namespace simulation
+}  // namespace downwash
