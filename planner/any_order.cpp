@@ -127,6 +127,9 @@ void AnyOrder::search() {
             order = comparison_.chosen();
             continue;
         }
+        if (options_.stop_at_first_solution && has_way()) {
+            break;
+        }
         if (!has_grown && is_order(order) && leaves_energy(order)) {
             has_grown = true;
             compare_orders(left_.part(share_of_more_legs));
@@ -175,6 +178,7 @@ SequenceEffort AnyOrder::effort() const {
     constexpr double min_round = 0.22;                             // two rounds then, of 22 and 78 %
     SequenceEffort effort;
     effort.has_energy_to_spare = !is_thrifty_;
+    effort.ends_with_first_plan = options_.stop_at_first_solution;
     if (has_way()) {
         effort.min_round = min_round;  // short rounds are for a first flight, and there is one
     } else if (is_timed()) {
@@ -286,7 +290,7 @@ SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& 
     const bool counts_alone = !has_way() || order.places.size() > best_order_.places.size();
     const double to_beat = counts_alone ? std::numeric_limits<double>::infinity() : cost_when_flown(best_);
     if (options_.on_progress) {
-        inner.on_progress = [this, to_beat](Progress progress) {
+        inner.on_progress = [this, counts_alone](Progress progress) {
             progress.wall_s = clock_.seconds();
             progress.iterations += record_.iterations;
             nodes_of_attempt_ = progress.nodes;
@@ -295,7 +299,8 @@ SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& 
                 progress.rejected += count;
             }
             if (has_way()) {
-                progress.best_cost = std::min(progress.best_cost.value_or(best_.cost), to_beat);
+                const double cost = progress.best_cost.value_or(best_.cost);
+                progress.best_cost = counts_alone ? cost : std::min(cost, best_.cost);
             }
             options_.on_progress(progress);
         };

@@ -75,7 +75,11 @@ bool CandidateCheck::counts(const Plan& plan, double cost) {
         ++(has_failed(*certificate_) ? candidates.failed_certificate : candidates.unfinished);
         return false;
     }
-    return can_stop(plan);
+    if (!can_stop(plan)) {
+        ++(stops_ ? candidates.worse_stops : candidates.unfinished);
+        return false;
+    }
+    return true;
 }
 
 /// Too late for another certificate and, where a check may end after the search, to begin with another one.
@@ -222,6 +226,7 @@ SearchResult CandidateCheck::result(std::uint64_t iterations, const FlightStatis
     }
     record.states_checked = statistics.states_checked;
     record.rejected = statistics.rejected;
+    record.rejected["direct_flight"] = record.candidates.rejected();  // without those that lacked time
     record.stopped_by = labelled(statistics.stopped_by, task_.model.scene());
     result_.record = std::move(record);
     result_.found.tree = std::move(tree);

@@ -210,10 +210,10 @@ SolveOptions GoalSequence::options_of_part() {
     SolveOptions inner = options_;
     inner.known_plan.reset();
     inner.known_places.clear();
-    // A first plan is far from the cheapest.
-    inner.stop_at_first_solution = !has_way() && !is_thrifty();
     const std::size_t goal = round_.part_costs.size() + 1;
     const bool is_last = goal == goals_.size();
+    // A first plan is far from the cheapest.
+    inner.stop_at_first_solution = !has_way() && (!is_thrifty() || (is_last && effort_.ends_with_first_plan));
     if (options_.on_progress) {
         inner.on_progress = [this, goal, is_last](Progress progress) {
             progress.wall_s += record_.wall_s;

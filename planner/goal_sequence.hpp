@@ -19,6 +19,8 @@ struct SequenceEffort {
     double min_round = 0;  ///< share of the limits that a round after the first takes at least
     /// Where energy is limited: there is plenty of it, so that the first plan of each part will do.
     bool has_energy_to_spare = false;
+    /// Where energy is limited: the last part ends with its first plan, too, which makes the whole way one.
+    bool ends_with_first_plan = false;
     /// It ends when the searches for the way to one goal were in vain for so long [s], until there is a whole way.
     double patience_s = std::numeric_limits<double>::infinity();
 };

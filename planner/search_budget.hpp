@@ -133,6 +133,7 @@ inline void add_work(SearchRecord& sum, const SearchRecord& part) {
     sum.candidates.checked += part.candidates.checked;
     sum.candidates.failed_execution += part.candidates.failed_execution;
     sum.candidates.failed_certificate += part.candidates.failed_certificate;
+    sum.candidates.worse_stops += part.candidates.worse_stops;
     sum.candidates.unfinished += part.candidates.unfinished;
 }
 

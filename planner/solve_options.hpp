@@ -20,7 +20,7 @@ struct Progress {
     std::uint64_t iterations = 0;
     std::uint64_t nodes = 0;          ///< of all searches for this solution, as far as they were told of
     std::uint64_t rejected = 0;       ///< edges rejected so far, for any reason
-    std::optional<double> best_cost;  ///< cost of the best whole way; empty before the first solution
+    std::optional<double> best_cost;  ///< planned cost of the best whole way; empty before the first
     std::size_t goal = 1;             ///< the goal to which a way is searched, from 1
     std::size_t goals = 1;            ///< how many there are
     std::size_t round = 1;            ///< number of the search for a whole way through several goals, from 1

@@ -13,6 +13,7 @@
 #include "downwash/effects/measurements.hpp"
 #include "downwash/effects/wall_measurements.hpp"
 #include "downwash/grids/factor_grid_file.hpp"
+#include "downwash/problems/robot_sources.hpp"
 
 namespace downwash {
 namespace {
@@ -42,7 +43,8 @@ DataKind kind_of(const std::string& bytes, const std::string& name) {
         "has the columns '" + excerpt(joined(csv.names(), ", ")) +
             "': expected those of a grid (x_m,z_m,factor), of an effect table (z_over_r,factor), of measurements "
             "(z_over_r,thrust_ratio) or of measurements beside walls (distance_over_r,force_over_thrust,"
-            "moment_over_thrust_radius)");
+            "moment_over_thrust_radius)" +
+            (is_thrust_stand(joined(csv.names(), ",")) ? "; " + std::string(thrust_stand_keys) : ""));
     errors.throw_any();
     throw std::logic_error("columns of no kind are an error");
 }

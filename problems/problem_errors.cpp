@@ -35,12 +35,14 @@ std::string rounded(double value) {
 
 std::vector<KeyError> reversed_bounds(const Problem& p) {
     std::vector<KeyError> errors;
-    if (p.bounds.x_low_m >= p.bounds.x_high_m) {
-        errors.push_back({"environment.bounds.x_m", "is [low, high]: expected low below high"});
-    }
-    if (p.bounds.z_low_m >= p.bounds.z_high_m) {
-        errors.push_back({"environment.bounds.z_m", "is [low, high]: expected low below high"});
-    }
+    const auto check = [&errors](const char* key, double low, double high) {
+        if (low >= high) {
+            errors.push_back(
+                {key, "is [" + to_text(low) + ", " + to_text(high) + "]: expected [low, high], low below high"});
+        }
+    };
+    check("environment.bounds.x_m", p.bounds.x_low_m, p.bounds.x_high_m);
+    check("environment.bounds.z_m", p.bounds.z_low_m, p.bounds.z_high_m);
     return errors;
 }
 

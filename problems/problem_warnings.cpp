@@ -11,6 +11,7 @@
 #include "downwash/problems/geometry_warnings.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_check.hpp"
+#include "downwash/problems/slip_warnings.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/loop_margins.hpp"
 #include "downwash/simulation/robot_facts.hpp"
@@ -233,6 +234,7 @@ std::vector<KeyError> robot_remarks(const Robot& robot) {
         const std::vector<KeyError> found = find(robot);
         all.insert(all.end(), found.begin(), found.end());
     }
+    append(all, robot_slips(robot));
     return all;
 }
 
@@ -342,6 +344,7 @@ std::vector<KeyError> warnings_of(const ProblemCheck& check) {
         const std::vector<KeyError> found = find(problem);
         all.insert(all.end(), found.begin(), found.end());
     }
+    append(all, problem_slips(problem));
     append(all, closed_plane(check));
     append(all, geometry_warnings(check));
     return all;

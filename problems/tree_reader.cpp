@@ -6,6 +6,7 @@
 #include "downwash/base/files.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/problems/campaign.hpp"
+#include "downwash/problems/foreign_file.hpp"
 #include "downwash/problems/key_remedy.hpp"
 #include "downwash/problems/text_checks.hpp"
 #include "downwash/problems/value_reader.hpp"
@@ -27,6 +28,18 @@ std::string key_outside_robot(const std::string& path, std::string_view name) {
         return {};
     }
     return joined(path == robot ? "" : path.substr(robot.size() + 1), name);
+}
+
+/// Whether a condition in words has the name of a key: "with controller.type lyapunov" has "type".
+bool names(std::string_view condition, std::string_view name) {
+    const auto is_part = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; };
+    for (std::size_t at = condition.find(name); at != std::string_view::npos; at = condition.find(name, at + 1)) {
+        const std::size_t end = at + name.size();
+        if ((at == 0 || !is_part(condition[at - 1])) && (end == condition.size() || !is_part(condition[end]))) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /// What a group may be that nobody has thought about yet: a law whose gains all have defaults.
@@ -58,25 +71,37 @@ void TreeReader<Model>::read_document(const std::filesystem::path& file, const s
         }
         return;
     }
-    read_text(text, file, path);
+    const bool is_referred = !files_.empty();
+    const std::string referrer =
+        is_referred ? files_[file_].path.string() + ":" + std::to_string(referred_from.line) : "";
+    read_text(text, file, path, referrer);
     file_ = referring_file;
 }
 
-/// Reads the text of a file as the group `path`.
+/// Reads the text of a file as the group `path`. @param referrer the place that names the file; empty without one
 template <class Model>
-void TreeReader<Model>::read_text(const std::string& text, const std::filesystem::path& file, const std::string& path) {
+void TreeReader<Model>::read_text(const std::string& text, const std::filesystem::path& file, const std::string& path,
+                                  const std::string& referrer) {
     files_.push_back({file, path});
     file_ = files_.size() - 1;
     places_[path] = {file_, {}};
+    const std::string taken_for = referrer.empty() ? "" : "; " + referrer + " takes it for the " + path;
     try {
         const YamlNode::Pointer root = parse_yaml(text);
         if (root->kind != YamlNode::Kind::map) {
-            report(path, root->mark, found_text(*root) + ": expected a file of keys and values");
+            const std::string foreign = foreign_file_text(file, text);
+            report(
+                path, root->mark,
+                (foreign.empty() ? found_text(*root) + ": expected a file of keys and values" : foreign) + taken_for);
         } else if (has_supported_schema(*root, path)) {
             read_keys({path, path, 0, {}, *root, {}, {}});
         }
     } catch (const YamlError& error) {
-        report(path, error.mark, error.what());
+        if (const std::string foreign = foreign_file_text(file, text); !foreign.empty()) {
+            report(path, {}, foreign + taken_for);
+        } else {
+            report(path, error.mark, error.what());
+        }
     }
 }
 
@@ -114,7 +139,8 @@ void TreeReader<Model>::read_keys(Group group) {
         const std::string name(last_name(parameter->path));
         if (group.entries.contains(name)) {
             read_parameter(group, *parameter);
-        } else if (parameter->required && (!parameter->applies || parameter->applies(model_, group.index)) &&
+        } else if (parameter->required && !is_undecided(group, *parameter) &&
+                   (!parameter->applies || parameter->applies(model_, group.index)) &&
                    std::count(group.meant.begin(), group.meant.end(), name) == 0) {
             report(joined(group.key, name), group.mark,
                    "is missing: expected " + expectation(*parameter) + to_begin_with(parameter->path));
@@ -158,6 +184,24 @@ std::string TreeReader<Model>::current_name(const Group& group, const YamlNode& 
     return key.text;
 }
 
+/// The entry before that of a key, where its value is a whole number: "z_m: 9" of {z_m: 9,4}.
+template <class Model>
+std::optional<std::string> TreeReader<Model>::number_before_comma(const Group& group, const Mark& mark) {
+    const auto& entries = group.node.entries;
+    const auto is_there = [&](const auto& entry) {
+        return entry.first->mark.line == mark.line && entry.first->mark.column == mark.column;
+    };
+    const auto found = std::ranges::find_if(entries, is_there);
+    if (found == entries.begin() || found == entries.end()) {
+        return std::nullopt;
+    }
+    const auto& [key, value] = *std::prev(found);
+    const bool is_whole = key->kind == YamlNode::Kind::scalar && value->kind == YamlNode::Kind::scalar &&
+                          value->mark.line == mark.line && value->text.find('.') == std::string::npos &&
+                          parse_number<double>(value->text).has_value();
+    return is_whole ? std::optional(key->text + ": " + value->text) : std::nullopt;
+}
+
 template <class Model>
 void TreeReader<Model>::report_unknown(Group& group, const std::string& name, const Mark& mark) {
     std::vector<std::string_view> valid;
@@ -169,6 +213,11 @@ void TreeReader<Model>::report_unknown(Group& group, const std::string& name, co
                "merge keys (<<) are not read: expected the keys themselves; an alias (*name) may stand for a whole "
                "value");
         group.meant.insert(group.meant.end(), valid.begin(), valid.end());  // it may bring any of them
+        return;
+    }
+    if (const auto before = number_before_comma(group, mark); before && parse_number<std::uint64_t>(name)) {
+        report(mark,
+               "unknown key '" + excerpt(name) + "': numbers have a decimal point; write " + *before + "." + name);
         return;
     }
     const std::string elsewhere = key_outside_robot(group.path, name);
@@ -210,6 +259,17 @@ void TreeReader<Model>::check_alternatives(const Group& group) {
     }
 }
 
+/// Whether a key that decides where this one has a meaning is wrong itself, or misspelt.
+template <class Model>
+bool TreeReader<Model>::is_undecided(const Group& group, const Parameter<Model>& parameter) const {
+    return std::ranges::any_of(table_.children(group.path), [&](const Parameter<Model>* other) {
+        const std::string_view name = last_name(other->path);
+        const bool is_misspelt = std::ranges::find(group.meant, name) != group.meant.end();
+        const bool is_wrong = other->kind == ParameterKind::choice && wrong_.touch(joined(group.key, name));
+        return (is_misspelt || is_wrong) && names(parameter.condition, name);
+    });
+}
+
 template <class Model>
 void TreeReader<Model>::read_parameter(const Group& group, const Parameter<Model>& parameter) {
     const std::string name(last_name(parameter.path));
@@ -219,7 +279,7 @@ void TreeReader<Model>::read_parameter(const Group& group, const Parameter<Model
         return;
     }
     if (parameter.applies && !parameter.applies(model_, group.index)) {
-        if (!leaves_out_inapplicable_) {
+        if (!leaves_out_inapplicable_ && !is_undecided(group, parameter)) {
             report(key, key_node->mark, "has a meaning only " + parameter.condition + ": remove it");
         }
         return;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -62,12 +63,15 @@ class TreeReader {
     };
 
     void read_document(const std::filesystem::path& file, const std::string& path, const Mark& referred_from);
-    void read_text(const std::string& text, const std::filesystem::path& file, const std::string& path);
+    void read_text(const std::string& text, const std::filesystem::path& file, const std::string& path,
+                   const std::string& referrer = "");
     bool has_supported_schema(const YamlNode& root, const std::string& path);
     void read_keys(Group group);
     void find_entries(Group& group);
     [[nodiscard]] std::string current_name(const Group& group, const YamlNode& key);
     void report_unknown(Group& group, const std::string& name, const Mark& mark);
+    [[nodiscard]] static std::optional<std::string> number_before_comma(const Group& group, const Mark& mark);
+    [[nodiscard]] bool is_undecided(const Group& group, const Parameter<Model>& parameter) const;
     void check_alternatives(const Group& group);
     void read_parameter(const Group& group, const Parameter<Model>& parameter);
     void read_group(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key,

@@ -44,6 +44,14 @@ double read_number(const ParameterInfo& info, const YamlNode& node) {
     if (is_not_finite(text)) {
         throw YamlError(node.mark, "is not finite: expected " + expectation(info));
     }
+    if (const std::size_t comma = text.find(','); comma != std::string::npos) {
+        std::string with_point = text;
+        with_point[comma] = '.';
+        if (parse_number<double>(with_point)) {
+            throw YamlError(node.mark, found_text(node) + ": expected " + expectation(info) +
+                                           "; numbers have a decimal point: " + with_point);
+        }
+    }
     refuse(info, node);
 }
 

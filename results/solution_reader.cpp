@@ -102,6 +102,7 @@ void read_planning(JsonReader& reader, const Node& root, Solution& solution) {
         reader.read_count(*candidates, "checked", record.candidates.checked);
         reader.read_count(*candidates, "failed_execution", record.candidates.failed_execution);
         reader.read_count(*candidates, "failed_certificate", record.candidates.failed_certificate);
+        reader.read_count(*candidates, "worse_stops", record.candidates.worse_stops);
         reader.read_count(*candidates, "unfinished", record.candidates.unfinished);
     }
     // nearest_approach_m and obstruction explain a search without a plan, and there is nothing to read in its file.

@@ -114,6 +114,7 @@ Json planning_json(const Found& found, const SearchRecord& record, std::span<con
              {{"checked", record.candidates.checked},
               {"failed_execution", record.candidates.failed_execution},
               {"failed_certificate", record.candidates.failed_certificate},
+              {"worse_stops", record.candidates.worse_stops},
               {"unfinished", record.candidates.unfinished}}},
             {"nearest_approach_m", number(found.nearest_approach_m)},
             {"obstruction", obstruction_json(found.obstruction, axes)},

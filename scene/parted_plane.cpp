@@ -241,12 +241,18 @@ class PartedPlane {
 
     [[nodiscard]] Cell classified(std::int32_t column, std::int32_t row, std::int32_t size) {
         Cell cell{column, row, size, State::free, no_obstacle};
-        const PlaneSquare square = square_of(cell);
-        if (square.x_m - square.half_m > bounds_.x_high_m || square.z_m - square.half_m > bounds_.z_high_m) {
+        PlaneSquare square = square_of(cell);
+        const double x_low_m = square.x_m - square.half_m, z_low_m = square.z_m - square.half_m;
+        if (x_low_m > bounds_.x_high_m || z_low_m > bounds_.z_high_m) {
             cell.state = State::blocked;
             return cell;
         }
-        const double off_m = std::numbers::sqrt2 * square.half_m;  // of a centre in the square from its middle
+        // Of the square counts what lies within the bounds.
+        const double half_x_m = std::min(square.half_m, 0.5 * (bounds_.x_high_m - x_low_m));
+        const double half_z_m = std::min(square.half_m, 0.5 * (bounds_.z_high_m - z_low_m));
+        square.x_m = x_low_m + half_x_m;
+        square.z_m = z_low_m + half_z_m;
+        const double off_m = std::hypot(half_x_m, half_z_m);  // of a centre in there from its middle
         for (const Core& core : cores_) {
             if (core.radius_m <= off_m) {
                 continue;

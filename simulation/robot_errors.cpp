@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/scene/shape_parameters.hpp"
@@ -71,11 +72,14 @@ std::vector<KeyError> too_little_thrust(const Robot& robot) {
     if (greatest_n > weight_n(robot)) {
         return {};
     }
+    constexpr double far_too_heavy = 20;
+    const bool may_be_grams = weight_n(robot) > far_too_heavy * greatest_n;
     return {{"rotors.max_thrust_n", "gives " + rounded(greatest_n) + " N with " + rounded(count) +
                                         " rotors, which cannot lift the weight of " + rounded(weight_n(robot)) +
                                         " N: " + rounded(weight_n(robot) - greatest_n) +
                                         " N are missing; expected more than " + rounded(weight_n(robot) / count) +
-                                        " N a rotor"}};
+                                        " N a rotor" +
+                                        (may_be_grams ? "; masses are in kilograms, not in grams" : "")}};
 }
 
 std::vector<KeyError> too_much_thrust(const Robot& robot) {
@@ -124,7 +128,10 @@ std::vector<KeyError> crossed_arm_limits(const Robot& robot) {
     if (!robot.arm.is_limited || robot.arm.lower_limit_rad <= robot.arm.upper_limit_rad) {
         return {};
     }
-    return {{"arm.limits_deg", "is [lower, upper]: expected the lower limit below the upper one, or both the same"}};
+    return {
+        {"arm.limits_deg", "is [" + rounded(robot.arm.lower_limit_rad * degrees_per_radian) + ", " +
+                               rounded(robot.arm.upper_limit_rad * degrees_per_radian) +
+                               "]: expected [lower, upper], the lower limit below the upper one, or both the same"}};
 }
 
 std::vector<KeyError> weak_joint(const Robot& robot) {

@@ -59,16 +59,19 @@ void add_drag(Rows& rows, const std::string& of, std::string_view description, P
 
 void add_multirotor(Rows& rows) {
     using Body = MultirotorParameters;
-    append(rows, {group("multirotor", "the multirotor without its arm"),
-                  number("multirotor.mass_kg", "mass, rotors and battery included, arm excluded",
-                         in(&Robot::multirotor, &Body::mass_kg))
-                      .between(min_mass_kg, 1e4)
-                      .is_required(),
-                  number("multirotor.pitch_inertia_kg_m2",
-                         "moment of inertia about the pitch axis through its centre of mass",
-                         in(&Robot::multirotor, &Body::pitch_inertia_kg_m2))
-                      .between(min_inertia_kg_m2, 1e5)
-                      .is_required()});
+    append(
+        rows,
+        {group("multirotor", "the multirotor without its arm"),
+         number("multirotor.mass_kg", "mass, rotors and battery included, arm excluded",
+                in(&Robot::multirotor, &Body::mass_kg))
+             .between(min_mass_kg, 1e4)
+             .is_required(),
+         number(
+             "multirotor.pitch_inertia_kg_m2",
+             "moment of inertia about the pitch axis, y of the body (iyy), through its centre of mass without the arm",
+             in(&Robot::multirotor, &Body::pitch_inertia_kg_m2))
+             .between(min_inertia_kg_m2, 1e5)
+             .is_required()});
     add_drag(rows, "multirotor", "air drag at its centre of mass; none where it is left out",
              in(&Robot::multirotor, &Body::drag));
     rows.push_back(
@@ -146,7 +149,9 @@ void add_arm(Rows& rows) {
          number("arm.center_of_mass_m", "joint to the arm's centre of mass", of(&Arm::center_of_mass_m))
              .between(0, 100)
              .is_required(),
-         number("arm.inertia_kg_m2", "moment of inertia about the arm's own centre of mass", of(&Arm::inertia_kg_m2))
+         number("arm.inertia_kg_m2",
+                "moment of inertia about the pitch axis, y of the body, through the arm's own centre of mass",
+                of(&Arm::inertia_kg_m2))
              .between(min_inertia_kg_m2, 1e5)
              .is_required(),
          number("arm.radius_m", "radius of the capsule that encloses it", of(&Arm::radius_m))

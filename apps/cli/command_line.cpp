@@ -53,6 +53,13 @@ std::string explained(CLI::App& command, const CLI::Error& error) {
         if (error.get_name() == "ArgumentMismatch" && option->get_items_expected_min() > 1) {
             return fmt::format("{} takes {} values: expected {}", spelled, option->get_items_expected_min(), expected);
         }
+        constexpr std::string_view before = ": Value ", after = " not in range ";
+        if (const std::size_t range = value.rfind(after);
+            value.starts_with(before) && range != std::string_view::npos) {
+            return fmt::format("{} is '{}': expected {}; {}", spelled,
+                               excerpt(value.substr(before.size(), range - before.size())),
+                               value.substr(range + after.size()), expected);
+        }
         if (error.get_name() == "ValidationError" || error.get_name() == "ArgumentMismatch") {
             return fmt::format("{}; expected {}", message, expected);
         }

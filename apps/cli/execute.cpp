@@ -58,7 +58,8 @@ std::optional<FlownWorld> world_of(const ExecuteArguments& given, const Problem&
         return std::nullopt;
     }
     if (!problem.uncertainty) {
-        throw UsageError("--world needs to know what is uncertain: " + given.problem + " has no `uncertainty:`");
+        throw UsageError("--world needs to know what is uncertain: " + given.problem +
+                         " has no `uncertainty:`, or `uncertainty: none`; `uncertainty: {}` stands for the defaults");
     }
     return make_world(problem.robot,
                       draw_world(*problem.uncertainty, problem.robot, seed_of(given, problem), *given.world));

@@ -11,6 +11,7 @@
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/key_reference.hpp"
+#include "downwash/problems/robot_sources.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -119,6 +120,7 @@ std::string keys_with(std::string_view word, const std::vector<KeyReference>& al
 ExitCode run(const ExplainArguments& given) {
     const std::vector<KeyReference>& all = key_reference(*file_kind_named(given.kind));
     const std::string wanted = without_indices(given.key);
+    const std::string_view source = robot_source_text(last_name(wanted));
     for (const auto& is_meant : {ends_with_key, ends_with_stem}) {
         std::vector<std::pair<std::string, std::string>> found;  // paths, and what there is to say of all of them
         for (const KeyReference& known : all) {
@@ -141,11 +143,18 @@ ExitCode run(const ExplainArguments& given) {
             if (const std::string others = keys_with(wanted, all); !others.empty()) {
                 fmt::print("\nOther keys with this word:\n{}", others);
             }
+            if (!source.empty()) {
+                fmt::print("\n{}", source);
+            }
             return ExitCode::done;
         }
     }
     if (const std::string_view remark = out_of_plane_remark(last_name(wanted)); !remark.empty()) {
         fmt::print("No key is called '{}': {}.\n", excerpt(given.key), remark);
+        return ExitCode::done;
+    }
+    if (!source.empty()) {
+        fmt::print("{}", source);
         return ExitCode::done;
     }
     if (const std::string about = keys_about(wanted, all); !about.empty() && !wanted.empty()) {

@@ -66,6 +66,9 @@ ExitCode export_run(const ExportArguments& given) {
     }
     write_made_from(source_of(run_folder(given.folder), record), file.parent_path(),
                     {{file.filename().string(), exported(record, chosen, settings_of(given))}});
+    for (const std::string& warning : export_warnings(record, chosen)) {
+        print_error(fmt::format("warning: {}\n", warning));
+    }
     fmt::print("{}\n", file.string());
     return ExitCode::done;
 }

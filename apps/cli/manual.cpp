@@ -38,8 +38,12 @@ std::string in_roff(const std::string& text) {
 
 /// "--seed N" or "PROBLEM"
 std::string spelled(const Option& option) {
-    return option.is_positional() || option.max_values() == 0 ? option.spelling()
-                                                              : option.spelling() + " " + option.type();
+    std::string text = option.spelling();
+    if (!option.is_positional() && option.max_values() > 0) {
+        text += " " + option.type();
+    }
+    text.erase(std::min(text.find(':'), text.size()));  // a check follows, which the description says too
+    return text;
 }
 
 /// An entry of a list in a manual page.
@@ -75,8 +79,7 @@ std::string markdown_options(const Command& command) {
         if (option.name() == "--help") {
             continue;
         }
-        std::string name = spelled(option);
-        name.erase(std::min(name.find(':'), name.size()));  // a check follows, which the description says too
+        const std::string name = spelled(option);
         const std::string standard = option.default_text();
         rows += fmt::format("| `{}` | {}{}{} |\n", in_cell(name), in_cell(option.description()),
                             standard.empty() ? "" : "; default " + in_cell(standard),

@@ -23,7 +23,8 @@ bool is_live_terminal() {
 }
 
 std::string text_of(const Progress& progress) {
-    const std::string best = progress.best_cost ? fmt::format("best cost {:.6g}", *progress.best_cost) : "no plan yet";
+    const std::string best =
+        progress.best_cost ? fmt::format("best planned cost {:.6g}", *progress.best_cost) : "no plan yet";
     if (progress.legs) {
         return fmt::format("{:.1f} s, comparing orders of {} goals: {} legs flown, {}", progress.wall_s, progress.goals,
                            *progress.legs, best);

@@ -97,6 +97,20 @@ std::string order_rows(const VisitOrder& order, bool has_plan, const std::option
     return text;
 }
 
+/// Which goals a flight meets: of all, or of all targets and the place to return to.
+std::string met_goals(const Solution& solution, const Execution& flight) {
+    const std::vector<GoalVisit>& goals = flight.goals;
+    const std::size_t flown = solution.order ? std::min(solution.order->visits.size(), goals.size()) : goals.size();
+    const auto end = goals.begin() + static_cast<std::ptrdiff_t>(flown);
+    const auto met = std::count_if(goals.begin(), end, [](const GoalVisit& visit) { return visit.is_met; });
+    if (!solution.order) {
+        return fmt::format("{} of {} met", met, goals.size());
+    }
+    const std::size_t targets = solution.order->visits.size() + solution.order->left_out.size();
+    const char* way_back = end == goals.end() ? "" : end->is_met ? ", and the return" : ", but not the return";
+    return fmt::format("{} of {} targets met{}", met, targets, way_back);
+}
+
 /// Where a plan takes over from another one, and how the two join.
 std::string takeover_rows(const Problem& problem, const Replanned& from, std::string_view unit) {
     const Start& start = problem.start;
@@ -142,10 +156,8 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
                               touch.force_error_n, touch.power_w, touch.touched_s, touch.left_s)
                 : "none: the surface was not found");
     }
-    if (flight.goals.size() > 1) {
-        const auto met =
-            std::count_if(flight.goals.begin(), flight.goals.end(), [](const GoalVisit& v) { return v.is_met; });
-        text += table_row("goals", fmt::format("{} of {} met", met, flight.goals.size()));
+    if (flight.goals.size() > 1 || (solution.order && !solution.order->left_out.empty())) {
+        text += table_row("goals", met_goals(solution, flight));
         for (std::size_t i = 0; i < flight.goals.size(); ++i) {
             if (!flight.goals[i].is_met) {
                 text += table_row("", goal_name(solution, i + 1) + " missed: " + error_text(goals[i], flight.goals[i]));
@@ -192,6 +204,14 @@ std::string certificate_rows(const Certificate& certificate, bool is_of_part, co
                                       shell_word(folder), certificate.worst.front().world));
     }
     return text;
+}
+
+/// Whether the search never came to its goal, and nothing says that it cannot.
+bool was_out_of_reach(const Solution& solution) {
+    const auto& off_m = solution.nearest_approach_m;
+    const bool is_closed = solution.obstruction && solution.obstruction->cause == "closed_plane";
+    return solution.status != Status::solved && !solution.interrupted && off_m && *off_m > 0 && !is_closed &&
+           solution.planning.candidates.checked == 0;
 }
 
 }  // namespace
@@ -336,12 +356,13 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
     if (!record.stopped_by.empty()) {
         text += table_row("collisions with", most_stopping(record.stopped_by));
     }
-    if (const Candidates& plans = record.candidates;
-        plans.failed_execution + plans.failed_certificate + plans.unfinished > 0) {
-        text += table_row("candidates",
-                          fmt::format("{} plans were checked: {} failed when executed, {} got no certificate{}",
-                                      plans.checked, plans.failed_execution, plans.failed_certificate,
-                                      plans.unfinished > 0 ? fmt::format(", {} not in time", plans.unfinished) : ""));
+    if (const Candidates& plans = record.candidates; plans.rejected() + plans.unfinished > 0) {
+        text += table_row(
+            "candidates",
+            fmt::format("{} plans were checked: {} failed when executed, {} got no certificate{}{}", plans.checked,
+                        plans.failed_execution, plans.failed_certificate,
+                        plans.worse_stops > 0 ? fmt::format(", {} had fewer safe stops", plans.worse_stops) : "",
+                        plans.unfinished > 0 ? fmt::format(", {} not in time", plans.unfinished) : ""));
     }
     if (record.first_certified_wall_s) {
         text += table_row("first certified", fmt::format("after {:.3f} s", *record.first_certified_wall_s));
@@ -381,6 +402,12 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
             text += table_row("", "The vehicle reached " + missed_region(solution) + " but could not hover there.");
             text += table_row("", "Run `downwash aeromap hold` to check whether a hover is stable.");
         }
+    }
+    if (was_out_of_reach(solution)) {
+        text +=
+            table_row("hint", "Nothing proves that no way leads there. Give the search more time (--time-limit) or");
+        text += table_row("", "goals on the way (a list of goals); in narrow scenes, set");
+        text += table_row("", "planner.parameters.passage_share to 0.3.");
     }
     text += table_row("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
     if (std::error_code ignored; std::filesystem::exists(folder / run_page_name, ignored)) {

@@ -34,8 +34,10 @@ void check_options(const ValidateArguments& given, const Problem& problem) {
         throw UsageError("--runs is {}: expected 1 to {}", *given.runs, most_runs);
     }
     if ((given.runs || given.world) && !problem.uncertainty) {
-        throw UsageError("{} needs to know what is uncertain: {} has no `uncertainty:`",
-                         given.runs ? "--runs" : "--world", given.problem);
+        throw UsageError(
+            "{} needs to know what is uncertain: {} has no `uncertainty:`, or `uncertainty: none`; `uncertainty: {{}}` "
+            "stands for the defaults",
+            given.runs ? "--runs" : "--world", given.problem);
     }
 }
 

@@ -49,7 +49,14 @@ struct Candidates {
     std::uint64_t checked = 0;
     std::uint64_t failed_execution = 0;    ///< discarded after their execution with direct aerodynamics
     std::uint64_t failed_certificate = 0;  ///< discarded because they failed in too many worlds
+    std::uint64_t worse_stops = 0;         ///< discarded because they can be left for a hover for less of their time
     std::uint64_t unfinished = 0;          ///< discarded because the search ended before their flights did
+    // The others count or, when executed, were no better than one before.
+
+    /// Discarded for what they do, not for lack of time.
+    [[nodiscard]] std::uint64_t rejected() const noexcept {
+        return failed_execution + failed_certificate + worse_stops;
+    }
 };
 
 /// How a search went.

@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/exports/export_settings.hpp"
@@ -49,5 +50,9 @@ inline constexpr std::array export_formats{
 /// @throws InputError if the run lacks what the format shows (plan, flight), or a setting is missing or out of range
 [[nodiscard]] DOWNWASH_EXPORT std::string exported(const RunRecord& run, const ExportFormat& format,
                                                    const ExportSettings& settings);
+
+/// What a format leaves out or cannot keep of a run, for those who fly it.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<std::string> export_warnings(const RunRecord& run,
+                                                                       const ExportFormat& format);
 
 }  // namespace downwash

@@ -11,6 +11,9 @@
 
 namespace downwash {
 
+/// Within this distance of a waypoint, an autopilot begins the next leg of a mission [m].
+inline constexpr double acceptance_radius_m = 0.2;
+
 /// The plan of a run that another autopilot can fly. @throws InputError without a plan, or where a touch follows it
 [[nodiscard]] const Plan& plan_to_be_flown(const RunRecord& run);
 

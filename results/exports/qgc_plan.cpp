@@ -214,7 +214,6 @@ class Items {
 };
 
 Json items_of(const RunRecord& run, const OnEarth& earth, const ExportSettings& settings) {
-    constexpr double acceptance_radius_m = 0.2;
     const std::vector<Corner> corners = corners_of(run);
     Items items(earth, run.problem.plane, settings.origin->altitude_m);
     items.add_at(corners.front().at, takeoff_command, {0, 0, 0});

@@ -292,7 +292,7 @@ class Tours(Attack):
         shutil.rmtree(self.folder / "run", ignore_errors=True)
         process = self.program.start("solve", self.file, "--time-limit", "120", "--seed", str(draw.randrange(10**6)), "--out", "run")
         for line in process.stderr:
-            if b"best cost" in line:
+            if b"best planned cost" in line:
                 break
         time.sleep(draw.uniform(0, 5))
         process.send_signal(signal.SIGINT)

@@ -115,7 +115,7 @@ TEST_CASE("What cannot be plotted is rejected with a remedy, and leaves no file"
              {"a.svg --x 2 2", "--x 2 2"},
              {"a.svg --z 1 1e9", "--z 1"},
              {"a.svg --x 0 1000 --z 0 1", "40 times"},
-             {"a.svg --width 20", "--width: Value 20 not in range 400 to 8000"},
+             {"a.svg --width 20", "--width is '20': expected 400 to 8000; "},
              {"a.svg --arm-deg 90", "--arm-deg changes nothing in this picture: it goes with PROBLEM"},
              {"a.svg --what hold --rotor 2", "--rotor changes nothing"},
              {"a.svg --what force --lateral 0", "--lateral changes nothing"},

@@ -109,7 +109,7 @@ TEST_CASE("A second run into a folder is refused while the first one is planning
     const PlannedWorkspace work;
     const auto before = work.files("downwash-out");
     const Program planning(work, words("solve one.yaml --time-limit 600"));
-    REQUIRE(planning.has_said("best cost"));
+    REQUIRE(planning.has_said("best planned cost"));
     CHECK(work.hidden() == 1);
     const Result refused = work.run("solve one.yaml", work.quick);
     check_rejected(refused, default_place + " cannot be written: process ");

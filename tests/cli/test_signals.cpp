@@ -23,7 +23,7 @@ struct LongSearch : Workspace {
 
 TEST_CASE("A signal in the middle of a search writes the best plan so far") {
     const auto [signal, code] = GENERATE(std::pair(SIGINT, 130), std::pair(SIGTERM, 143));
-    const LongSearch work("best cost", GENERATE("mp-arm-ada", "mp-arm-da", "mp-arm"));
+    const LongSearch work("best planned cost", GENERATE("mp-arm-ada", "mp-arm-da", "mp-arm"));
     work.program.send(signal);
     const Result result = work.program.wait();
     CHECK(result.code == code);

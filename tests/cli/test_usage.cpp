@@ -171,3 +171,9 @@ TEST_CASE("Check tells of every error with file and line and column") {
     }
     CHECK(found.at("robots").size() == 1);
 }
+
+TEST_CASE("A manual page shows words to choose from without the name of their check") {
+    const Workspace work;
+    CHECK_THAT(work.succeed("manual explain").out,
+               Catch::Contains("problem|robot|campaign\n") && !Catch::Contains("{problem"));
+}

@@ -406,3 +406,24 @@ TEST_CASE("a run without a plan has nothing to fly, but a scene, and equal runs 
         CHECK(exported(record(), format, at(47, 8, 0)) == exported(record(), format, at(47, 8, 0)));
     }
 }
+
+TEST_CASE("a mission warns of what it leaves out and cannot keep, other formats of nothing") {
+    const auto warnings_of = [](const RunRecord& run, std::string_view name) {
+        const auto format =
+            std::ranges::find_if(export_formats, [name](const ExportFormat& each) { return each.name == name; });
+        return export_warnings(run, *format);
+    };
+    RunRecord run = record();
+    run.flight = {{"arm_rad", "clearance_m"}, {{0.1, 0.3, 0.2}, {0.5, 0.1, 0.4}}, {2, 3, 4}};
+    run.solution_text = R"({"certificate": {"given": false}})";
+    const std::vector<std::string> all = warnings_of(run, "qgc");
+    REQUIRE(all.size() == 3);
+    CHECK_THAT(all[0],
+               Catch::StartsWith("the plan passes obstacles at 0.1 m, but an autopilot may cut corners by 0.2 m"));
+    CHECK_THAT(all[1], Catch::StartsWith("the plan moves the arm by 11 degrees"));
+    CHECK_THAT(all[2], Catch::StartsWith("the plan has no certificate"));
+    CHECK(warnings_of(run, "csv").empty());
+    run.flight.columns = {{0.1, 0.1, 0.1}, {0.5, std::nan(""), 0.4}};
+    run.solution_text = R"({"certificate": {"given": true}})";
+    CHECK(warnings_of(run, "qgc").empty());
+}

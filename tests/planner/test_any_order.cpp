@@ -141,6 +141,43 @@ TEST_CASE("an energy budget is kept: targets for which it is not enough are left
     CHECK(none.order->left_out[2].reason == LeftOutReason::energy_budget);
 }
 
+TEST_CASE("who asks for the first plan alone gets no more under a limit of energy") {
+    Problem problem = line_of_targets(Variant::mp_arm_ada);
+    problem.planner.max_iterations = 6000;
+    const Solution without_limit = solve(problem);
+    REQUIRE(without_limit.status == Status::solved);
+    problem.energy_budget_j = 1.5 * without_limit.execution->energy_j;
+    SolveOptions first_only;
+    first_only.stop_at_first_solution = true;
+    const Solution first = solve(problem, first_only);
+    REQUIRE(first.status == Status::solved);
+    CHECK(first.order->left_out.empty());
+    CHECK(first.execution->energy_j <= *problem.energy_budget_j);
+    CHECK(first.planning.improvements.size() == 1);
+    const Solution best = solve(problem);
+    CHECK(best.planning.improvements.size() > 1);
+    CHECK(best.planning.iterations > first.planning.iterations);
+}
+
+TEST_CASE("progress tells planned costs of targets in any order, never an executed one") {
+    Problem problem = line_of_targets(Variant::mp_arm_ada);
+    problem.planner.max_iterations = 6000;
+    SolveOptions options;
+    std::vector<double> told;
+    options.on_progress = [&](const Progress& now) {
+        if (now.best_cost && (told.empty() || told.back() != *now.best_cost)) {
+            told.push_back(*now.best_cost);
+        }
+    };
+    const Solution solution = solve(problem, options);
+    REQUIRE(solution.status == Status::solved);
+    REQUIRE_FALSE(told.empty());
+    for (const Improvement& each : solution.planning.improvements) {
+        REQUIRE(each.flown_cost);
+        CHECK(std::ranges::find(told, *each.flown_cost) == told.end());
+    }
+}
+
 TEST_CASE("a target behind a wall is left out, and the flight to the others is not called solved") {
     Problem problem = line_of_targets(Variant::mp_arm_da);
     problem.obstacles.push_back(test::box("wall", {0.3, 8, 5}, {3, 0, 2.5}));
@@ -249,6 +286,7 @@ TEST_CASE("a search for targets that the time ends in the middle of worlds says 
     CHECK(solution.certificate->worlds > 0);
     CHECK_FALSE(has_failed(*solution.certificate));
     CHECK(solution.planning.candidates.unfinished > 0);
+    CHECK(solution.planning.rejected.at("direct_flight") == solution.planning.candidates.rejected());
     CHECK(solution.planning.candidates.failed_certificate == 0);
     REQUIRE(solution.order);
     CHECK(solution.order->visits.size() == 4);

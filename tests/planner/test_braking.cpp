@@ -34,11 +34,15 @@ struct StricterStops {
     std::optional<planning::StopFinder> finder;
 };
 
-Found searched(const Problem& problem, planning::StopFinder* stop_finder, const SolveOptions& options) {
+planning::SearchResult result_of(const Problem& problem, planning::StopFinder* stop_finder,
+                                 const SolveOptions& options) {
     const auto model = make_flight_model(problem);
     return planning::search_goal(problem, problem, {problem.planner.variant, model, model->make_map(problem.bounds)},
-                                 planning::Course::from_start(problem, *model), {nullptr, stop_finder}, options)
-        .found;
+                                 planning::Course::from_start(problem, *model), {nullptr, stop_finder}, options);
+}
+
+Found searched(const Problem& problem, planning::StopFinder* stop_finder, const SolveOptions& options) {
+    return result_of(problem, stop_finder, options).found;
 }
 
 }  // namespace
@@ -114,8 +118,14 @@ TEST_CASE("a cheaper plan that can be left for a hover for less of its time does
     options.on_plan = [&](const FoundPlan& found) {
         shares.push_back(stricter.finder->along(found.plan).share_without);
     };
-    const Found preferring = searched(problem, &*stricter.finder, options);
+    const planning::SearchResult result = result_of(problem, &*stricter.finder, options);
+    const Found& preferring = result.found;
     REQUIRE(preferring.status == Status::solved);
+    const Candidates& candidates = result.record.candidates;
+    CHECK(candidates.worse_stops > 0);
+    CHECK(candidates.unfinished == 0);
+    CHECK(result.record.rejected.at("direct_flight") ==
+          candidates.failed_execution + candidates.failed_certificate + candidates.worse_stops);
     REQUIRE(preferring.safe_stops);
     CHECK(preferring.safe_stops->share_without == shares.back());
     for (std::size_t i = 1; i < shares.size(); ++i) {

@@ -61,6 +61,8 @@ TEST_CASE("The columns of a file of numbers tell its kind, and its dialect is to
 TEST_CASE("A file of numbers without columns of a kind, or with an error, is told with its line") {
     CHECK_THAT(test::error_of([] { return read("a,b\n1,2\n"); }),
                Contains("data.csv:1: has the columns 'a, b'") && Contains("an effect table (z_over_r,factor)"));
+    CHECK_THAT(test::error_of([] { return read("throttle,thrust_g,power_w\n20,330,30\n"); }),
+               Contains("a thrust stand gives rotors.max_thrust_n") && Contains("power_coefficient_w_n1p5"));
     CHECK_THAT(test::error_of([] { return read("z_over_r,thrust_ratio\n1,1.1\n2,much\n"); }),
                Contains("data.csv:3:3: thrust_ratio is 'much'"));
     CHECK_THAT(test::error_of([] { return read_data_file("nowhere.csv"); }), Contains("nowhere.csv"));

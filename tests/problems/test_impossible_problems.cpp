@@ -29,8 +29,8 @@ const Edit edits[] = {
     {"arm_deg: 90", "arm_deg: 90, rotor_thrust_n: [9, 9, 9], controller_memory: [1, 2]",
      "12:55: start.rotor_thrust_n has 3 numbers: expected 4, one for each rotor\n12:85: start.controller_memory has 2 "
      "numbers: expected 7, as many as robot.controller remembers"},
-    {"x_m: [-6, 6]", "x_m: [6, -6]", "5:17: environment.bounds.x_m is [low, high]: expected low below high"},
-    {"z_m: [0.5, 5]", "z_m: [5, 5]", "5:31: environment.bounds.z_m is [low, high]: expected low below high"},
+    {"x_m: [-6, 6]", "x_m: [6, -6]", "5:17: environment.bounds.x_m is [6, -6]: expected [low, high], low below high"},
+    {"z_m: [0.5, 5]", "z_m: [5, 5]", "5:31: environment.bounds.z_m is [5, 5]: expected [low, high], low below high"},
     {"x_m: [-6, 6], z_m: [0.5, 5]", "x_m: [-6000, 6000], z_m: [0.5, 50]",
      "9:1: aero.grid_m makes a map of 4.81e+08 cells over the bounds: expected at most 1.678e+07; choose a coarser "
      "grid or narrower bounds"},

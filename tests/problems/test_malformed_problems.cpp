@@ -59,9 +59,10 @@ const Edit edits[] = {
     {"x_m: -4", "x_m: [-4]", "12:14: start.x_m is a list: expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: {is: -4}", "12:14: start.x_m is a group of keys: expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: 4 m", "12:14: start.x_m is '4 m': expected a number in m from -100000 to 100000"},
-    {"x_m: -4", "x_m: 4,5",
-     "12:16: unknown key '5' in start: expected x_m, z_m, arm_deg, pitch_deg, vx_m_s, vz_m_s, pitch_rate_deg_s, "
-     "arm_rate_deg_s, rotor_thrust_n, controller_memory or reference"},
+    {"x_m: -4", "x_m: 4,5", "12:16: unknown key '5': numbers have a decimal point; write x_m: 4.5"},
+    {"  end_effector: {x_m: 3, z_m: 2.5, tolerance_m: 0.1}\n",
+     "  any_order: [{end_effector: {x_m: 3, z_m: 2.5}}]\n  energy_budget_j: 1000\n",
+     "14:3: unknown key 'any_order' in goal: did you mean 'in_any_order'?"},
     {"x_m: -4", "x_m: 0x10", "12:14: start.x_m is '0x10': expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: 1_000", "12:14: start.x_m is '1_000': expected a number in m from -100000 to 100000"},
     {"x_m: -4", "x_m: .nan", "12:14: start.x_m is not finite: expected a number in m from -100000 to 100000"},

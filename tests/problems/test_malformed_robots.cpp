@@ -52,6 +52,8 @@ const Edit edits[] = {
      "13:75: arm.inertia_kg_m2 is more than the arm's whole mass at its full length would have (0.6808 kg m2)"},
     {"center_of_mass_m: 0.7", "center_of_mass_m: 1.3",
      "13:55: arm.center_of_mass_m is 1.3: expected at most the arm's length, 1.2 m"},
+    {"  position: {kp: 2", "  type: own-law\n  horizontal: {position_kp: 1}\n  position: {kp: 2",
+     "15:9: controller.type is 'own-law': expected one of model-inversion, cascaded-pid or lyapunov"},
     {"max_torque_nm: 12", "max_torque_nm: 3",
      "13:112: arm.max_torque_nm is 3, too little to hold the arm level: expected at least 3.089 Nm"},
     {"max_torque_nm: 12", "max_torque_nm: 12, wash: {scale: 1}",
@@ -59,7 +61,8 @@ const Edit edits[] = {
     {"max_torque_nm: 12", "max_torque_nm: 12, drag: {linear_n_s_m: 1}, wash: {scale: -1}",
      "13:155: arm.wash.scale is -1: expected a number from 0 to 10"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: [90, -90]",
-     "13:128: arm.limits_deg is [lower, upper]: expected the lower limit below the upper one, or both the same"},
+     "13:128: arm.limits_deg is [90, -90]: expected [lower, upper], the lower limit below the upper one, or both the "
+     "same"},
     {"max_torque_nm: 12", "max_torque_nm: 12, limits_deg: 90",
      "13:128: arm.limits_deg is '90': expected [lower, upper] in deg from -3600 to 3600, or null"},
     {"    - box: {size_m: [1, 1, 0.2], center_m: [0, 0, 0]}", "    []",

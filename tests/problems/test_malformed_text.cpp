@@ -5,6 +5,9 @@
 
 using namespace downwash;
 using namespace downwash::test;
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
 
 namespace {
 
@@ -141,4 +144,38 @@ TEST_CASE("aliases are understood, but not those that never end or explode") {
 TEST_CASE("a file full of errors is not read to the end") {
     const std::string errors = errors_of_text(std::string(good_problem) + repeated("wrong: 1\n", 100000));
     CHECK(std::count(errors.begin(), errors.end(), '\n') == 99);
+}
+
+TEST_CASE("a file of another program is told as what it is, with what to do instead") {
+    CHECK_THAT(errors_of_text("<?xml version=\"1.0\"?>\n<robot name=\"hexa\">\n<link/></robot>\n"),
+               StartsWith("problem.yaml:1:1: is a robot in URDF: expected a robot file in YAML (") &&
+                   Contains("multirotor.pitch_inertia_kg_m2") && Contains("docs/robot_files.md"));
+    CHECK_THAT(errors_of_text("<sdf version='1.9'/>"), StartsWith("problem.yaml:1:1: is a robot in SDF: "));
+    CHECK(errors_of_text("<svg/>") == "problem.yaml:1:1: is XML: expected YAML");
+    CHECK_THAT(
+        errors_of_text("solid x\n facet normal 0 0 1\n"),
+        StartsWith("problem.yaml:1:1: is a mesh: expected YAML; a mesh (.stl or .obj) stands in a problem file"));
+    CHECK(errors_of_text("z_over_r,factor\n1,1.1\n") == "problem.yaml:1:1: is a table: expected YAML");
+    CHECK_THAT(errors_of_text("throttle_pct;Thrust_g;power_w\n20;330;30\n"),
+               Contains("rotors.max_thrust_n") && Contains("rotors.power_coefficient_w_n1p5"));
+}
+
+TEST_CASE("a file that stands for the robot is named with the line that names it") {
+    const TestFolder folder;
+    folder.write("problem.yaml", good_problem);
+    folder.write("robot.yaml", "thrust_g,power_w\n330,30\n");
+    const std::string table = folder.errors_in([&] { return read_problem(folder / "problem.yaml"); });
+    CHECK_THAT(table, StartsWith("robot.yaml:1:1: is a table: expected YAML; a thrust stand gives") &&
+                          EndsWith("problem.yaml:3 takes it for the robot"));
+    folder.write("robot.yaml", "- mass\n");
+    CHECK_THAT(folder.errors_in([&] { return read_problem(folder / "problem.yaml"); }),
+               StartsWith("robot.yaml:1:1: is a list: expected a file of keys and values; ") &&
+                   EndsWith("problem.yaml:3 takes it for the robot"));
+}
+
+TEST_CASE("a decimal comma is named") {
+    CHECK(errors_of_text(edited(good_problem, "z_m: 2.5, tolerance_m", "z_m: 2,5, tolerance_m")) ==
+          "problem.yaml:14:33: unknown key '5': numbers have a decimal point; write z_m: 2.5");
+    CHECK_THAT(errors_of_text(edited(good_problem, "hold_s: 5", "hold_s: 5,5")),
+               Contains("goal.hold_s is '5,5': expected") && Contains("; numbers have a decimal point: 5.5"));
 }

@@ -153,3 +153,17 @@ TEST_CASE("Nothing is cut off that a vehicle can reach") {
     CHECK(proven > 2);
     CHECK(open > 2);
 }
+
+TEST_CASE("A wall up to the edge of the bounds closes the plane, and so does one that ends a little below") {
+    constexpr Bounds wide{-14, 14, 0.5, 11};  // squares of 5.5 cm
+    const MayBeIn region = beyond(2);
+    const auto closes = [&](double top_m) {
+        const std::vector<Obstacle> wall{box({1, 40, top_m}, {0, 0, 0.5 * top_m})};
+        return !cut_off_regions(Scene(wall), {}, robot(), wide, -12, 3, std::span(&region, 1)).empty();
+    };
+    // The core reaches 0.105 m below a centre of mass, which may be 5 cm above the bounds.
+    CHECK(closes(11.0));
+    CHECK(closes(10.975));  // half a square more than these
+    CHECK_FALSE(closes(10.94));
+    CHECK_FALSE(closes(10.8));
+}

@@ -1,0 +1,70 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "downwash/base/angles.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/exports/export_format.hpp"
+#include "downwash/exports/formats.hpp"
+
+namespace downwash {
+namespace {
+
+bool has_certificate(const RunRecord& run) {
+    const auto solution = nlohmann::json::parse(run.solution_text, nullptr, false);
+    if (!solution.is_object() || !solution.contains("certificate")) {
+        return false;
+    }
+    const auto& certificate = solution["certificate"];
+    return certificate.is_object() && certificate.value("given", false);
+}
+
+/// By how much the arm moves in the flight.
+double arm_range_rad(const RunRecord& run) {
+    const std::vector<double>* angles = run.flight.find("arm_rad");
+    if (angles == nullptr || angles->empty()) {
+        return 0;
+    }
+    const auto [low, high] = std::ranges::minmax_element(*angles);
+    return *high - *low;
+}
+
+/// Infinite without obstacles.
+double least_clearance_m(const RunRecord& run) {
+    double least_m = INFINITY;
+    if (const std::vector<double>* clearances_m = run.flight.find("clearance_m")) {
+        for (const double clearance_m : *clearances_m) {
+            least_m = clearance_m < least_m ? clearance_m : least_m;  // NaN without obstacles
+        }
+    }
+    return least_m;
+}
+
+}  // namespace
+
+std::vector<std::string> export_warnings(const RunRecord& run, const ExportFormat& format) {
+    constexpr double small_arm_range_rad = 5 / degrees_per_radian;
+    std::vector<std::string> warnings;
+    if (!format.has_origin) {
+        return warnings;
+    }
+    if (const double clearance_m = least_clearance_m(run); clearance_m < acceptance_radius_m) {
+        warnings.push_back(
+            "the plan passes obstacles at " + to_text(clearance_m, 2) + " m, but an autopilot may cut corners by " +
+            to_text(acceptance_radius_m) +
+            " m, the acceptance radius of a waypoint: plan with a larger --margin, or fly the set-points "
+            "of `--format csv` or `ros`");
+    }
+    if (const double range_rad = arm_range_rad(run); range_rad > small_arm_range_rad) {
+        warnings.push_back("the plan moves the arm by " + to_fixed_text(range_rad * degrees_per_radian, 0) +
+                           " degrees, and a mission has no arm: `--format csv` and `ros` have");
+    }
+    if (!has_certificate(run)) {
+        warnings.push_back(
+            "the plan has no certificate: it was checked in the nominal world alone; plan with an "
+            "`uncertainty:`, or see `downwash validate --runs`");
+    }
+    return warnings;
+}
+
+}  // namespace downwash
