@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "downwash/base/csv_dialect.hpp"
+#include "downwash/base/number_remedy.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {
@@ -77,9 +78,47 @@ std::size_t CsvReader::required(std::string_view name, std::string_view expected
     const auto column = find(name);
     if (!column) {
         errors_.add(header_line_, "has no column " + std::string(name) + " in '" + excerpt(joined(names_, ", ")) +
-                                      "': expected " + std::string(expected));
+                                      "': expected " + std::string(expected) + remedy_without({name}));
     }
     return column.value_or(0);
+}
+
+std::string CsvReader::remedy_without(std::initializer_list<std::string_view> missing) const {
+    std::string remedy;
+    for (const std::string_view name : missing) {
+        remedy += find(name) ? "" : header_remedy(name);
+    }
+    if (!remedy.empty()) {
+        return remedy;
+    }
+    if (std::any_of(names_.begin(), names_.end(), [](const auto& n) { return n.find('|') != std::string::npos; })) {
+        return "; separate columns by ';', tabs or ',', not by '|'";
+    }
+    std::string_view rest = rest_;
+    for (std::size_t line = next_line_; line < next_line_ + 5 && !rest.empty(); ++line) {
+        const std::string_view text = rest.substr(0, rest.find(line_end_));
+        if (std::any_of(missing.begin(), missing.end(),
+                        [text](std::string_view name) { return text.find(name) != std::string_view::npos; })) {
+            return "; the names seem to stand in line " + std::to_string(line) + ": begin the lines above with #";
+        }
+        rest.remove_prefix(std::min(text.size() + 1, rest.size()));
+    }
+    return {};
+}
+
+/// What to do about a column that is called like `name` but for a unit or blanks.
+std::string CsvReader::header_remedy(std::string_view name) const {
+    for (const std::string& written : names_) {
+        const std::size_t unit = std::min(written.find_first_of("[("), written.size());
+        std::string plain(trimmed(std::string_view(written).substr(0, unit)));
+        std::replace_if(
+            plain.begin(), plain.end(), [](char c) { return c == ' ' || c == '-' || c == '/' || c == '.'; }, '_');
+        if (is_same_word(plain, name)) {
+            return "; write '" + excerpt(written) + "' as " + std::string(name) +
+                   (written.find('%', unit) != std::string::npos ? ", and divide percent by 100" : "");
+        }
+    }
+    return {};
 }
 
 bool CsvReader::next() {
@@ -113,6 +152,12 @@ void CsvReader::add_length_error(std::size_t count) {
                     message + "; if its numbers have decimal commas, separate the columns by ';' or quote the numbers");
         errors_.throw_any();  // as all lines will be
     }
+    if (count == names_.size() + 1 && rows_ == 1 && separator_ == ' ' && cells_.front().text == "1") {
+        errors_.add(line_, message +
+                               "; if the first one is the name of a row, as R writes it, leave those out "
+                               "(row.names = FALSE)");
+        errors_.throw_any();
+    }
     const std::string_view first = cells_.front().text;
     const char other = separator_of(first);
     std::string_view rest = first;
@@ -126,17 +171,34 @@ void CsvReader::add_length_error(std::size_t count) {
 }
 
 std::optional<double> CsvReader::number(std::size_t column, double low, double high) {
-    is_number_[column] = true;
+    is_used_[column] = true;
     const std::string_view text = cell(column);
-    const auto value = decimal_number(text, decimal_sign_);
+    auto value = decimal_number(text, decimal_sign_);
+    if (!value) {
+        value = only_reading(text, low, high);
+    }
     if (value && *value >= low && *value <= high) {
+        if (decimal_line_ == 0 && text.find('.') != std::string_view::npos) {
+            decimal_line_ = line_;
+        }
+        CsvColumn& range = ranges_[column];
+        range.low = std::min(range.low, *value);
+        range.high = std::max(range.high, *value);
         return value;
     }
     std::string expected = sign_error(text);
     if (expected.empty()) {
         const bool is_limited = low > -std::numeric_limits<double>::max();
-        expected = ": expected a " +
-                   (is_limited ? "number from " + to_text(low) + " to " + to_text(high) : std::string("finite number"));
+        expected =
+            ": expected a " +
+            (is_limited ? "number from " + to_text(low) + " to " + to_text(high) : std::string("finite number")) +
+            number_remedy(text, decimal_sign_);
+        const auto has_digit = [](const Cell& each) {
+            return each.text.find_first_of("0123456789") != std::string_view::npos;
+        };
+        if (rows_ == 1 && std::none_of(cells_.begin(), cells_.end(), has_digit) && filled_cells() > 1) {
+            expected += "; if this is a line of units, begin it with #";
+        }
     }
     add_error(column, names_[column] + " is '" + excerpt(text) + "'" + expected);
     return std::nullopt;
@@ -145,8 +207,13 @@ std::optional<double> CsvReader::number(std::size_t column, double low, double h
 CsvFacts CsvReader::facts() const {
     CsvFacts facts{separator_, decimal_sign_, rows_, {}, {}};
     for (std::size_t i = 0; i < names_.size(); ++i) {
-        if (!names_[i].empty()) {
-            (is_number_[i] ? facts.used : facts.others).push_back(names_[i]);
+        if (names_[i].empty()) {
+            continue;
+        }
+        if (is_used_[i]) {
+            facts.used.push_back(ranges_[i]);
+        } else {
+            facts.others.push_back(names_[i]);
         }
     }
     return facts;
@@ -154,6 +221,29 @@ CsvFacts CsvReader::facts() const {
 
 void CsvReader::add_error(std::size_t column, const std::string& message) {
     errors_.add(cells_[column].line, cells_[column].place, message);
+}
+
+/// The number that a comma between thousands or before decimals means if the range of its column allows only one of
+/// both; from there on the decimal sign is known.
+std::optional<double> CsvReader::only_reading(std::string_view cell, double low, double high) {
+    if (decimal_line_ != 0 || decimal_sign_ != '.' || cell.find('.') != std::string_view::npos ||
+        std::count(cell.begin(), cell.end(), ',') != 1) {
+        return std::nullopt;
+    }
+    std::string without(cell);
+    std::erase(without, ',');
+    const auto decimal = decimal_number(cell, ',');
+    const auto thousands = decimal_number(without, '.');
+    const auto is_in = [low, high](const auto& value) { return value && *value >= low && *value <= high; };
+    if (is_in(decimal) == is_in(thousands)) {
+        return std::nullopt;
+    }
+    if (is_in(decimal)) {
+        decimal_sign_ = ',';
+        decimal_line_ = line_;
+        return decimal;
+    }
+    return thousands;
 }
 
 /// What is wrong with the decimal sign of a cell; empty if it is not the sign.
@@ -167,7 +257,8 @@ std::string CsvReader::sign_error(std::string_view cell) const {
         std::replace(as_decimal.begin(), as_decimal.end(), ',', '.');
         std::string as_thousands(cell);
         std::erase(as_thousands, ',');
-        return ", which may mean " + excerpt(as_decimal) + " or " + excerpt(as_thousands) + ": expected one of these";
+        return ", which may mean " + excerpt(as_decimal) + " or " + excerpt(as_thousands) +
+               ": expected one of these; add a zero to its decimals, or leave out what stands between thousands";
     }
     return std::string(other == ',' ? ", with a comma" : ", with a point") + ", but a number in line " +
            std::to_string(decimal_line_) + " has a decimal " + (other == ',' ? "point" : "comma") +
@@ -241,7 +332,8 @@ void CsvReader::name_columns() {
         }
         names_.push_back(name);
         header_places_.push_back(cells_[i].place);
-        is_number_.push_back(false);
+        is_used_.push_back(false);
+        ranges_.push_back({name});
     }
     errors_.throw_any();
 }

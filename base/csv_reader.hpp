@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <span>
@@ -25,10 +26,11 @@ namespace downwash {
 /// The look of the text says its dialect. Cells are separated by semicolons, tabs, commas or blanks, whichever of
 /// these the line of names has first in this order (a first line such as `sep=;` decides), and may stand in quotation
 /// marks (RFC 4180). Decimal signs are points, or commas if the first number that cannot be understood otherwise has
-/// one; `1,234` can, and is no such number. Lines end with LF, CR LF or CR. Comments begin with `#`, a million at most;
-/// the line of names may be one if numbers follow it directly (numpy.savetxt). Lines without content, columns without a
-/// name (indices) and empty cells behind the last column are skipped. Encodings are those of utf8_text. An error that
-/// all lines will have, such as decimal commas between commas, is told once and ends the reading.
+/// one; `1,234` can, and is read only where one of its two meanings is in the range of its column. Lines end with LF,
+/// CR LF or CR. Comments begin with `#`, a million at most; the line of names may be one if numbers follow it directly
+/// (numpy.savetxt). Lines without content, columns without a name (indices) and empty cells behind the last column are
+/// skipped. Encodings are those of utf8_text. An error that all lines will have, such as decimal commas between commas,
+/// is told once and ends the reading.
 class DOWNWASH_EXPORT CsvReader {
  public:
     struct Limits {
@@ -58,6 +60,8 @@ class DOWNWASH_EXPORT CsvReader {
     [[nodiscard]] std::optional<std::size_t> find(std::string_view name) const { return find_column(names_, name); }
     /// The same. If there is none, adds an error and returns 0. @param expected which columns are
     [[nodiscard]] std::size_t required(std::string_view name, std::string_view expected);
+    /// What to do about columns that are not there: "; write 'z_over_r [-]' as z_over_r". Empty if nothing is known.
+    [[nodiscard]] std::string remedy_without(std::initializer_list<std::string_view> missing) const;
 
     /// Moves to the next row of as many cells as names; false if there is none. Adds an error for every other row.
     bool next();
@@ -71,7 +75,10 @@ class DOWNWASH_EXPORT CsvReader {
     /// Adds an error at a cell of the current row.
     void add_error(std::size_t column, const std::string& message);
 
-    /// The dialect, the rows so far, and the columns of which number() was asked so far.
+    /// Tells that a column of texts is read too.
+    void use(std::size_t column) { is_used_[column] = true; }
+
+    /// The dialect, the rows so far, and the columns of which number() or use() told so far.
     [[nodiscard]] CsvFacts facts() const;
 
     /// All comments so far.
@@ -104,6 +111,8 @@ class DOWNWASH_EXPORT CsvReader {
     [[nodiscard]] bool is_blank(std::size_t at) const;
     [[nodiscard]] std::size_t skip_blanks(std::size_t at) const;
     [[nodiscard]] std::string sign_error(std::string_view cell) const;
+    [[nodiscard]] std::optional<double> only_reading(std::string_view cell, double low, double high);
+    [[nodiscard]] std::string header_remedy(std::string_view name) const;
 
     Utf8Text text_;
     LineErrors& errors_;
@@ -117,7 +126,8 @@ class DOWNWASH_EXPORT CsvReader {
     std::size_t decimal_line_ = 0;  ///< where a number shows the sign; 0 if none does
 
     std::vector<std::string> names_;
-    std::vector<bool> is_number_;  ///< of each column, whether it was read as numbers
+    std::vector<bool> is_used_;  ///< of each column, whether it was read
+    std::vector<CsvColumn> ranges_;
     std::vector<std::size_t> header_places_;
     std::size_t header_line_ = 0;
     std::vector<Comment> comments_;

@@ -11,15 +11,21 @@ void LineErrors::add(std::size_t line, std::size_t column, const std::string& me
 }
 
 void LineErrors::throw_any() const {
-    throw_if_any(errors_);
+    std::vector<KeyError> errors = errors_;
+    if (more_ > 0) {
+        errors.push_back(
+            {"", file_ + ": and " + std::to_string(more_) + (more_ == 1 ? " more error" : " more errors")});
+    }
+    throw_if_any(std::move(errors));
 }
 
 void LineErrors::add_at(const std::string& place, const std::string& message) {
     constexpr std::size_t max_errors = 20;
-    errors_.push_back({"", file_ + place + ": " + message});
     if (errors_.size() == max_errors) {
-        throw_any();
+        ++more_;
+        return;
     }
+    errors_.push_back({"", file_ + place + ": " + message});
 }
 
 }  // namespace downwash

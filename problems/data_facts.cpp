@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <initializer_list>
 #include <stdexcept>
 
 #include "downwash/base/csv_reader.hpp"
@@ -44,7 +45,8 @@ DataKind kind_of(const std::string& bytes, const std::string& name) {
             "': expected those of a grid (x_m,z_m,factor), of an effect table (z_over_r,factor), of measurements "
             "(z_over_r,thrust_ratio) or of measurements beside walls (distance_over_r,force_over_thrust,"
             "moment_over_thrust_radius)" +
-            (is_thrust_stand(joined(csv.names(), ",")) ? "; " + std::string(thrust_stand_keys) : ""));
+            (is_thrust_stand(joined(csv.names(), ",")) ? "; " + std::string(thrust_stand_keys)
+                                                       : csv.remedy_without({"z_over_r", "factor", "thrust_ratio"})));
     errors.throw_any();
     throw std::logic_error("columns of no kind are an error");
 }
@@ -63,6 +65,22 @@ CsvFacts facts_of(DataKind kind, const std::string& bytes, const std::string& na
     return parse_wall_measurements(bytes, name).csv;
 }
 
+const CsvColumn* column_named(const CsvFacts& csv, std::initializer_list<std::string_view> names) {
+    for (const CsvColumn& column : csv.used) {
+        const auto is_meant = [&column](std::string_view name) { return is_same_word(name, column.name); };
+        if (column.has_numbers() && std::any_of(names.begin(), names.end(), is_meant)) {
+            return &column;
+        }
+    }
+    return nullptr;
+}
+
+/// "factor from 0.01 to 0.3"
+std::string range_text(const CsvColumn& column) {
+    constexpr int digits = 4;
+    return excerpt(column.name) + " from " + to_text(column.low, digits) + " to " + to_text(column.high, digits);
+}
+
 bool ends_with(std::string_view name, std::string_view ending) {
     return name.size() >= ending.size() && is_same_word(name.substr(name.size() - ending.size()), ending);
 }
@@ -74,8 +92,11 @@ std::string_view name_of(DataKind kind) {
 }
 
 std::vector<DataFacts> data_facts(const Problem& problem) {
+    return data_facts(problem.aero);
+}
+
+std::vector<DataFacts> data_facts(const AeroSettings& aero) {
     std::vector<DataFacts> all;
-    const AeroSettings& aero = problem.aero;
     if (aero.map) {
         all.push_back({"aero.map", aero.map_file.value_or(""), DataKind::grid, aero.map->csv()});
     }
@@ -95,6 +116,32 @@ DataFacts read_data_file(const std::filesystem::path& file) {
     const std::string bytes = naming(file, [&] { return read_whole_file(file, max_grid_file_bytes); });
     const DataKind kind = kind_of(bytes, file.string());
     return {"", file.string(), kind, facts_of(kind, bytes, file.string())};
+}
+
+std::vector<std::string> data_remarks(const DataFacts& data, double max_factor) {
+    constexpr double most_distance_radii = 4;  // beyond it surfaces change the thrust by less than half a percent
+    const std::string has = "'" + data.file + "' has ";
+    std::vector<std::string> remarks;
+    if (const CsvColumn* ratio = column_named(data.csv, {"factor", "thrust_ratio"})) {
+        constexpr const char* expected = "expected K = T / T_free, which is 1 far from surfaces";
+        if (ratio->high < 1) {
+            remarks.push_back(has + range_text(*ratio) + ", below 1 throughout: " + expected +
+                              "; to gains add 1, percent divide by 100 before");
+        } else if (ratio->high > 2 * max_factor) {
+            remarks.push_back(has + range_text(*ratio) + ", far above the most that surfaces multiply thrust by, " +
+                              to_text(max_factor) + ": " + expected + "; divide percent by 100, to gains add 1");
+        }
+    }
+    if (const CsvColumn* distance = column_named(data.csv, {"z_over_r"});
+        distance != nullptr && distance->low >= most_distance_radii) {
+        remarks.push_back(has + range_text(*distance) +
+                          ", all too far from a surface for its effect: expected distances over the rotor radius, "
+                          "both in the same unit, from some 0.3 on");
+    }
+    if (!data.csv.others.empty() && (data.kind == DataKind::effect_table || data.kind == DataKind::grid)) {
+        remarks.push_back(has + "columns that are not read: " + excerpt(joined(data.csv.others, ", ")));
+    }
+    return remarks;
 }
 
 std::string_view unit_of_column(std::string_view name) {

@@ -32,6 +32,10 @@ struct DataFacts {
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT DataFacts read_data_file(const std::filesystem::path& file);
 
+/// What is likely not meant about the numbers of a file: K as gains or percent, distances that are not in radii,
+/// columns of a table or a grid that nothing reads. @param max_factor most that a surface may multiply thrust by
+[[nodiscard]] DOWNWASH_EXPORT std::vector<std::string> data_remarks(const DataFacts& data, double max_factor = 2);
+
 /// The unit in which a column of such a file is read: "m", "deg", "rotor radii", or "1" for a ratio.
 [[nodiscard]] DOWNWASH_EXPORT std::string_view unit_of_column(std::string_view name);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <set>
@@ -10,6 +11,7 @@
 #include <variant>
 
 #include "downwash/base/text.hpp"
+#include "downwash/scene/mesh_remarks.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
 
 namespace downwash {
@@ -17,6 +19,8 @@ namespace {
 
 /// Obstacles this many times larger or smaller than the bounds are suspicious.
 constexpr double suspicious_ratio = 100;
+/// Single precision is coarse beyond this [m].
+constexpr double max_step_m = 0.01;
 /// A surface farther from a rotor changes its thrust by less than half a percent [radii].
 constexpr double aerodynamic_reach_radii = 4;
 /// Files with coordinates beyond this are likely those of a map [m].
@@ -113,42 +117,54 @@ struct Region {
 
     [[nodiscard]] bool is_huge(const BoundingBox& box) const { return size_of(box) >= suspicious_ratio * bounds_m; }
     [[nodiscard]] bool is_tiny(const BoundingBox& box) const { return suspicious_ratio * size_of(box) <= bounds_m; }
+    /// Whether a size may be that of another unit.
+    [[nodiscard]] bool is_unlikely(const BoundingBox& box) const {
+        constexpr double unlikely_ratio = 5;
+        return size_of(box) >= unlikely_ratio * bounds_m || is_tiny(box);
+    }
     [[nodiscard]] bool fits(const BoundingBox& box) const {
         return do_meet(box, reach) && !is_huge(box) && !is_tiny(box);
     }
 };
 
-/// Keys that would put an obstacle where it is in the way, the first of those that do; nothing if none does.
+/// The obstacle with its mesh at another scale, turned or not.
+Obstacle changed(const Obstacle& obstacle, double factor, bool is_turned) {
+    Obstacle tried = obstacle;
+    if (auto* mesh = std::get_if<Mesh>(&tried.shape)) {
+        mesh->scale *= factor;
+    }
+    if (is_turned) {
+        tried.rpy_rad = {quarter_turn_rad, 0, 0};
+    }
+    return tried;
+}
+
+/// Keys that would put an obstacle where it is in the way, the first of those that do; nothing if none does. A scale is
+/// among them if the obstacle's size is unlikely: that of every unit that fits.
 std::optional<std::string> remedy_for(const Obstacle& obstacle, const PlaneOfMotion& plane, const Region& region) {
+    const std::string turn = "`rpy_deg: [90, 0, 0]`, for a file whose y axis points up";
+    const bool may_turn = obstacle.rpy_rad == Vector3{};
+    const auto box_of = [&](double factor, bool is_turned) {
+        return BoxInPlane(changed(obstacle, factor, is_turned), plane).box();
+    };
+    if (may_turn && region.fits(box_of(1, true))) {
+        return turn;
+    }
     const auto* mesh = std::get_if<Mesh>(&obstacle.shape);
-    std::vector<double> factors{1};
-    if (mesh != nullptr) {
-        for (const double scale : {1., 0.001, 0.01}) {
-            if (scale != mesh->scale) {
-                factors.push_back(scale / mesh->scale);
+    if (mesh == nullptr || !region.is_unlikely(box_of(1, false))) {
+        return std::nullopt;
+    }
+    for (const bool is_turned : {false, true}) {
+        std::vector<std::string> scales;
+        for (const double scale : {1., 0.001, 0.01, 0.0254}) {
+            const BoundingBox box = box_of(scale / mesh->scale, is_turned);
+            if (scale != mesh->scale && (may_turn || !is_turned) && region.fits(box)) {
+                scales.push_back("`scale: " + to_text(scale, 6) + "` (" + rounded(size_of(box)) + " m long)");
             }
         }
-    }
-    const bool may_turn = obstacle.rpy_rad == Vector3{};
-    for (const double factor : factors) {
-        for (const bool is_turned : {false, true}) {
-            if ((factor == 1 && !is_turned) || (is_turned && !may_turn)) {
-                continue;
-            }
-            Obstacle tried = obstacle;
-            std::string keys;
-            if (factor != 1) {
-                auto& scaled = std::get<Mesh>(tried.shape);
-                scaled.scale *= factor;
-                keys = "`scale: " + to_text(scaled.scale, 6) + "`";
-            }
-            if (is_turned) {
-                tried.rpy_rad = {quarter_turn_rad, 0, 0};
-                keys += std::string(keys.empty() ? "" : " and ") + "`rpy_deg: [90, 0, 0]`";
-            }
-            if (region.fits(BoxInPlane(tried, plane).box())) {
-                return keys + (is_turned ? ", for a file whose y axis points up" : "");
-            }
+        if (!scales.empty()) {
+            return joined_names(std::vector<std::string_view>(scales.begin(), scales.end())) +
+                   (is_turned ? " and " + turn : "");
         }
     }
     return std::nullopt;
@@ -204,22 +220,39 @@ void add_place_warning(const Obstacle& obstacle, const std::string& key, const P
                                               "gets there")});
 }
 
-void add_surface_warnings(const std::string& file, const TriangleMesh& surface, const SurfaceFacts& facts,
-                          const std::string& key, std::vector<KeyError>& warnings) {
-    for (const std::string& remark : surface.remarks) {
+void add_surface_warnings(const Mesh& mesh, const SurfaceFacts& facts, const std::string& key,
+                          std::vector<KeyError>& warnings) {
+    const std::string& file = mesh.file;
+    for (const std::string& remark : mesh.surface->remarks) {
         warnings.push_back({key, "'" + file + "' "});
         warnings.back().message += remark;
     }
+    const bool is_stl = is_same_word(std::filesystem::path(file).extension().string(), ".stl");
+    if (const double step_m = is_stl ? mesh.scale * single_precision_step(*mesh.surface) : 0; step_m > max_step_m) {
+        warnings.push_back({key, "'" + file +
+                                     "' has coordinates so large that single precision rounds them to steps of " +
+                                     rounded(step_m) + " m: export it about a local origin, or as OBJ"});
+    }
+    const std::size_t sheets = facts.pieces - facts.solid_pieces;
+    if (facts.open_edges == 0 && sheets > 0) {
+        warnings.push_back({key, "'" + file + "' has " + std::to_string(sheets) +
+                                     (sheets == 1 ? " piece that is" : " pieces that are") +
+                                     " closed but without volume: a sheet that is there twice, with nothing inside; "
+                                     "give it a thickness if it is meant to be solid"});
+    }
     if (facts.open_edges > 0) {
-        const std::size_t sheets = facts.pieces - facts.solid_pieces;
         const std::string which = facts.pieces == 1
                                       ? "the mesh is a sheet"
                                       : std::to_string(sheets) + " of its " + std::to_string(facts.pieces) +
                                             " pieces " + (sheets == 1 ? "is a sheet" : "are sheets");
+        const std::size_t shared = shared_edges(*mesh.surface);
+        const std::string remedy = shared == 0 ? "close it if it is meant to be solid"
+                                               : "three triangles or more meet at " + std::to_string(shared) +
+                                                     " of these edges: write a wall between two rooms once for each";
         warnings.push_back({key, "'" + file + "' is open at " + std::to_string(facts.open_edges) +
                                      (facts.open_edges == 1 ? " edge" : " edges, one of them") + " near " +
                                      text_of(facts.open_place, 7) + " in the file: " + which +
-                                     " with nothing inside; close it if it is meant to be solid"});
+                                     " with nothing inside; " + remedy});
     }
 }
 
@@ -259,7 +292,7 @@ std::vector<KeyError> geometry_warnings(const ProblemCheck& check) {
         const std::string key =
             "environment.obstacles[" + std::to_string(i) + "]" + (mesh != nullptr ? ".mesh.file" : ".octomap.file");
         if (mesh != nullptr && told.insert(mesh->surface.get()).second) {
-            add_surface_warnings(mesh->file, *mesh->surface, check.scene()->facts(i), key, warnings);
+            add_surface_warnings(*mesh, check.scene()->facts(i), key, warnings);
         }
         if (const auto* octomap = std::get_if<Octomap>(&obstacles[i].shape)) {
             add_unseen_warning(*octomap, key, warnings);

@@ -27,11 +27,17 @@ GeometryInput geometry_input(const Obstacle& obstacle, const GeometryFacts& fact
 
 }  // namespace
 
+std::vector<GeometryInput> geometry_inputs(const Scene& scene) {
+    std::vector<GeometryInput> all;
+    for (const GeometryFacts& facts : geometry_facts(scene)) {
+        all.push_back(geometry_input(scene.obstacles()[facts.obstacle], facts));
+    }
+    return all;
+}
+
 InputFacts input_facts(const Problem& problem, const Scene& scene) {
     InputFacts all;
-    for (const GeometryFacts& facts : geometry_facts(scene)) {
-        all.geometry.push_back(geometry_input(scene.obstacles()[facts.obstacle], facts));
-    }
+    all.geometry = geometry_inputs(scene);
     all.robot = {problem.robot.name, robot_facts(problem.robot)};
     all.data = data_facts(problem);
     return all;

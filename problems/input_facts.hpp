@@ -38,6 +38,9 @@ struct InputFacts {
     std::vector<DataFacts> data;  ///< every file of numbers
 };
 
+/// Every mesh and octree of a scene.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<GeometryInput> geometry_inputs(const Scene& scene);
+
 /// @param scene of the problem   @pre problem_errors(problem) is empty
 [[nodiscard]] DOWNWASH_EXPORT InputFacts input_facts(const Problem& problem, const Scene& scene);
 

@@ -47,6 +47,9 @@ class ProblemCheck {
 /// problem_warnings() of a problem that was checked and found sound.
 [[nodiscard]] std::vector<KeyError> warnings_of(const ProblemCheck& check);
 
+/// Those of problem_warnings() that tell of the files that a problem names, as far as what they need has no error.
+[[nodiscard]] std::vector<KeyError> file_warnings_of(const ProblemCheck& check, const WrongKeys& wrong);
+
 /// The flight model of a problem that was checked and found sound, in the scene of that check.
 [[nodiscard]] std::shared_ptr<const FlightModel> model_of(const ProblemCheck& check);
 

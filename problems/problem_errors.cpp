@@ -228,11 +228,14 @@ std::vector<KeyError> start_in_collision(const ProblemCheck& check) {
     const double clearance_m = checker.clearance_m(pose);
     const std::string remedy = ": move the start or the obstacle";
     constexpr double accuracy_m = 1e-7;  // of distances, with a reserve
+    const auto nearest = checker.nearest_obstacle(pose, std::max(clearance_m, 0.0) + accuracy_m);
+    const std::string obstacle =
+        nearest ? "the obstacle '" + excerpt(label_of(p.obstacles, *nearest)) + "'" : std::string("an obstacle");
     if (clearance_m < accuracy_m) {
-        return {{"start", "is in collision with an obstacle" + remedy}};
+        return {{"start", "is in collision with " + obstacle + remedy}};
     }
     const bool can_be_told = p.planner.safety_margin_m - clearance_m > accuracy_m;
-    return {{"start", "is " + rounded(clearance_m) + " m from an obstacle, " +
+    return {{"start", "is " + rounded(clearance_m) + " m from " + obstacle + ", " +
                           (can_be_told ? "nearer than" : "up to rounding not beyond") + " planner.safety_margin_m, " +
                           to_text(p.planner.safety_margin_m) + remedy}};
 }

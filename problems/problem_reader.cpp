@@ -72,6 +72,37 @@ PlannableProblem read_plannable_problem(const std::filesystem::path& file, const
     return {reader.model(), model_of(check)};
 }
 
+ProblemReading examine_problem(const std::filesystem::path& file) {
+    ProblemTreeReader reader(problem_parameters());
+    reader.read(file);
+    const ProblemCheck check(reader.model());
+    ProblemReading reading;
+    if (!reader.is_full()) {
+        reading.wrong = reader.wrong_keys();
+        const std::vector<KeyError> found = further_errors(check, reading.wrong);
+        reader.add(found);
+        reading.wrong.add(found);
+        if (!reading.wrong.touch("environment.obstacles")) {
+            reading.scene = check.scene();
+        }
+        if (!reading.wrong.touch("environment") && !reading.wrong.touch("robot") && !reading.wrong.touch("aero")) {
+            reading.model = model_of(check);
+        }
+    }
+    reading.errors = reader.errors();
+    reading.warnings = reader.outdated_keys();
+    const bool is_sound = reading.errors.empty();
+    if (is_sound) {
+        reader.adjust([](Problem& problem) { problem = with_touches(std::move(problem)); });
+    }
+    if (!reader.is_full()) {
+        const auto found = reader.placed(is_sound ? warnings_of(check) : file_warnings_of(check, reading.wrong));
+        reading.warnings.insert(reading.warnings.end(), found.begin(), found.end());
+    }
+    reading.problem = reader.model();
+    return reading;
+}
+
 Robot read_robot(const std::filesystem::path& file, const std::function<void(const LocatedError&)>& on_warning) {
     ProblemTreeReader reader(problem_parameters());
     reader.read(file, "robot");

@@ -2,8 +2,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string_view>
+#include <vector>
 
+#include "downwash/base/checks.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/problems/located_error.hpp"
 #include "downwash/problems/problem_model.hpp"
@@ -26,6 +29,20 @@ namespace downwash {
 read_plannable_problem(const std::filesystem::path& file, const std::function<void(Problem&)>& adjust = {},
                        const std::function<void(const LocatedError&)>& on_outdated = {},
                        const std::function<void(const LocatedError&)>& on_warning = {});
+
+/// What a problem's file says, whether or not it can be planned.
+struct ProblemReading {
+    Problem problem;                   ///< with defaults where keys are wrong
+    std::vector<LocatedError> errors;  ///< every error that read_problem() finds
+    std::vector<LocatedError>
+        warnings;     ///< keys by former names, and problem_warnings(); with errors those of files only
+    WrongKeys wrong;  ///< the keys of all errors
+    std::shared_ptr<const Scene> scene;        ///< null if an obstacle has an error
+    std::shared_ptr<const FlightModel> model;  ///< null if environment, robot or surface effects have an error
+};
+
+/// Reads a problem for programs that show what was read beside its errors. Throws nothing for an unsound file.
+[[nodiscard]] DOWNWASH_EXPORT ProblemReading examine_problem(const std::filesystem::path& file);
 
 /// Reads a robot from a file of its own. @throws ProblemFileError
 /// @param on_warning is told of keys by their former names and of everything that robot_warnings() finds

@@ -8,6 +8,7 @@
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/problems/cut_off_goals.hpp"
+#include "downwash/problems/data_facts.hpp"
 #include "downwash/problems/geometry_warnings.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_check.hpp"
@@ -284,6 +285,20 @@ std::vector<KeyError> thrust_beyond_rotors(const Problem& problem) {
                                             rounded(greatest_n / weight_n)}};
 }
 
+/// Numbers of a file that are likely not what they should be.
+std::vector<KeyError> unlikely_data(const Problem& problem) {
+    if (!problem.aero.enabled) {
+        return {};
+    }
+    std::vector<KeyError> warnings;
+    for (const DataFacts& data : data_facts(problem)) {
+        for (const std::string& remark : data_remarks(data, std::max(2.0, problem.aero.max_factor))) {
+            warnings.push_back({data.key, remark});
+        }
+    }
+    return warnings;
+}
+
 /// An uncertainty in which nothing is uncertain.
 std::vector<KeyError> exact_uncertainty(const Problem& problem) {
     if (!problem.uncertainty) {
@@ -340,13 +355,24 @@ std::vector<KeyError> warnings_of(const ProblemCheck& check) {
     for (KeyError& warning : all) {
         warning.key.insert(0, "robot.");
     }
-    for (const auto& find : {no_margin, thrust_beyond_rotors, goal_at_start, exact_uncertainty}) {
+    for (const auto& find : {no_margin, thrust_beyond_rotors, goal_at_start, unlikely_data, exact_uncertainty}) {
         const std::vector<KeyError> found = find(problem);
         all.insert(all.end(), found.begin(), found.end());
     }
     append(all, problem_slips(problem));
     append(all, closed_plane(check));
     append(all, geometry_warnings(check));
+    return all;
+}
+
+std::vector<KeyError> file_warnings_of(const ProblemCheck& check, const WrongKeys& wrong) {
+    std::vector<KeyError> all;
+    if (!wrong.touch("aero")) {
+        append(all, unlikely_data(check));
+    }
+    if (!wrong.touch("environment") && !wrong.touch("robot")) {
+        append(all, geometry_warnings(check));
+    }
     return all;
 }
 

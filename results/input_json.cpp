@@ -76,8 +76,14 @@ Json robot_json(const RobotInput& robot) {
 
 Json data_json(const DataFacts& data) {
     Json columns = Json::array();
-    for (const std::string& name : data.csv.used) {
-        columns.push_back({{"name", name}, {"unit", unit_of_column(name)}});
+    for (const CsvColumn& column : data.csv.used) {
+        Json json{{"name", column.name}, {"unit", nullptr}, {"low", nullptr}, {"high", nullptr}};
+        if (column.has_numbers()) {
+            json["unit"] = unit_of_column(column.name);
+            json["low"] = column.low;
+            json["high"] = column.high;
+        }
+        columns.push_back(std::move(json));
     }
     return {{"key", data.key.empty() ? Json() : Json(data.key)},
             {"file", data.file},

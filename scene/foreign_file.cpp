@@ -5,6 +5,7 @@
 
 #include "downwash/base/files.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/number_remedy.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash::foreign {
@@ -77,10 +78,13 @@ std::string_view Lines::take_line() {
 
 bool Lines::add_words(std::string_view line) {
     const std::string_view content = trimmed(line);
-    const bool is_comment = words_.empty() ? content.starts_with('#') : words_[0].starts_with('#');
-    const bool continues = continuation_ == Continuation::backslash && !is_comment && content.ends_with('\\');
+    const bool is_obj = continuation_ == Continuation::backslash;
+    const bool continues = is_obj && content.ends_with('\\');
     std::string_view rest = continues ? content.substr(0, content.size() - 1) : content;
     for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+        if (is_obj && word.starts_with('#')) {
+            return false;
+        }
         if (words_.size() == max_words) {
             fail("has more than " + std::to_string(max_words) + " words: expected one statement in a line");
         }
@@ -96,7 +100,7 @@ bool Lines::starts_with(std::string_view word) const {
 double Lines::coordinate(std::string_view word) const {
     const auto number = parse_number<double>(word);
     if (!number || std::abs(*number) > max_coordinate) {
-        fail("found '" + excerpt(word) + "', expected a finite number of at most 1e10 in size");
+        fail("found '" + excerpt(word) + "', expected a finite number of at most 1e10 in size" + number_remedy(word));
     }
     return *number;
 }

@@ -44,7 +44,8 @@ inline constexpr double max_coordinate = 1e10;
 /// A text, line by line, each as words between blanks. Lines end with LF, CR LF or CR.
 class Lines {
  public:
-    /// Whether a line that ends with a backslash, and is no comment, goes on in the next one.
+    /// Whether a line that ends with a backslash goes on in the next one, and a word that begins with # a comment up to
+    /// its end, as in OBJ files.
     enum class Continuation { none, backslash };
 
     Lines(std::string_view text, std::string name, Continuation continuation = Continuation::none)

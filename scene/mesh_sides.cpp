@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <iterator>
 #include <limits>
@@ -210,6 +211,53 @@ std::vector<bool> turned_to_agree(const std::vector<Neighbour>& neighbours) {
     return is_turned;
 }
 
+/// What a piece encloses, around one of its corners.
+struct Enclosed {
+    Vector3 origin{};
+    bool has_origin = false;
+    double area = 0;
+    double volume = 0;
+    Vector3 moment{};  ///< volume times its centroid
+
+    void add(const Vector3& first, const Vector3& second, const Vector3& third) {
+        if (!std::exchange(has_origin, true)) {
+            origin = first;
+        }
+        const Vector3 a = first - origin, b = second - origin, c = third - origin;
+        const Vector3 normal = cross(b - a, c - a);
+        const double part = dot(a, cross(b, c)) / 6;
+        area += std::sqrt(dot(normal, normal)) / 2;
+        volume += part;
+        moment = moment + 0.25 * part * (a + b + c);
+    }
+
+    /// Both vanish, up to coordinates of single precision; a solid that crosses itself may have no volume by its signs.
+    [[nodiscard]] bool is_flat() const {
+        constexpr double rounding = 1e-8;
+        return std::abs(volume) <= rounding * area * std::sqrt(area) &&
+               std::sqrt(dot(moment, moment)) <= rounding * area * area;
+    }
+};
+
+/// Which pieces without a rim enclose nothing, by the numbers of pieces_of().
+std::vector<bool> flat_pieces(const TriangleMesh& surface, const MeshSides& sides,
+                              const std::vector<std::uint32_t>& piece_of, const std::vector<Piece>& pieces) {
+    std::vector<Enclosed> enclosed(pieces.size());
+    for (std::size_t t = 0; t < piece_of.size(); ++t) {
+        if (piece_of[t] != nobody && !sides.is_sheet[t] && !sides.is_repeated[t]) {
+            const auto& [a, b, c] = surface.triangles[t];
+            const bool is_turned = sides.is_turned[t];
+            enclosed[piece_of[t]].add(surface.vertices_m[a], surface.vertices_m[is_turned ? c : b],
+                                      surface.vertices_m[is_turned ? b : c]);
+        }
+    }
+    std::vector<bool> is_flat(pieces.size());
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        is_flat[i] = enclosed[i].has_origin && enclosed[i].is_flat();
+    }
+    return is_flat;
+}
+
 /// Counts pieces and open edges. @param pieces judged(), by the numbers of `piece_of`
 SurfaceFacts facts_of(const TriangleMesh& surface, const std::vector<Edge>& edges,
                       const std::vector<std::uint32_t>& piece_of, const std::vector<Piece>& pieces) {
@@ -265,7 +313,12 @@ MeshSides sides_of(const TriangleMesh& surface) {
             return sides;
         }
     }
-    const SurfaceFacts& facts = sides.facts;
+    SurfaceFacts& facts = sides.facts;
+    const std::vector<bool> is_flat = flat_pieces(surface, sides, piece_of, pieces);
+    facts.solid_pieces -= static_cast<std::size_t>(std::count(is_flat.begin(), is_flat.end(), true));
+    for (std::size_t t = 0; t < count; ++t) {
+        sides.is_sheet[t] = sides.is_sheet[t] || (piece_of[t] != nobody && is_flat[piece_of[t]]);
+    }
     sides.kind = facts.solid_pieces == facts.pieces ? SurfaceKind::solid
                  : facts.solid_pieces == 0          ? SurfaceKind::sheet
                                                     : SurfaceKind::mixed;

@@ -13,7 +13,7 @@ namespace downwash {
 
 /// What the triangles of a surface enclose. A piece of it is what edges connect.
 enum class SurfaceKind {
-    sheet,          ///< nothing: every piece has a rim, an edge at which an odd number of triangles meets
+    sheet,          ///< nothing: every piece has a rim, an edge at which an odd number of triangles meets, or is flat
     solid,          ///< space: along every edge the triangles go as often one way as the other, once turned
     mixed,          ///< some pieces are sheets and some are solid
     contradictory,  ///< some piece has no rim, but no turning of triangles tells inside from outside
@@ -23,7 +23,7 @@ enum class SurfaceKind {
 struct MeshSides {
     SurfaceKind kind = SurfaceKind::sheet;
     std::vector<bool> is_turned;    ///< whether two corners of each triangle of a solid piece change places
-    std::vector<bool> is_sheet;     ///< whether each triangle belongs to a piece with a rim
+    std::vector<bool> is_sheet;     ///< whether each triangle belongs to a piece with a rim, or a flat one
     std::vector<bool> is_repeated;  ///< whether each triangle is there already and is to be left out
     SurfaceFacts facts;             ///< without its boxes; the place is one of the surface
 };
@@ -35,6 +35,7 @@ struct MeshSides {
 ///   are.
 /// - Triangles with the same three corners count once where that makes a piece a solid, and where all of them come in
 ///   pairs that go opposite ways: such faces have two sides, and enclose something only if their piece has no rim.
+/// - A piece without a rim that encloses no volume is flat: a sheet that is there twice.
 [[nodiscard]] DOWNWASH_EXPORT MeshSides sides_of(const TriangleMesh& surface);
 
 }  // namespace downwash

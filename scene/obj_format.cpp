@@ -61,6 +61,14 @@ std::string text_of(FaceFault fault) {
     return "";
 }
 
+/// Whether corners repeat from some corner on what they were from the first: two or more turns around the same outline.
+bool goes_around_again(const std::vector<std::uint32_t>& face) {
+    const auto second = std::find(face.begin() + 1, face.end(), face.front());
+    const auto turn = static_cast<std::size_t>(second - face.begin());
+    return second != face.end() && face.size() % turn == 0 &&
+           std::equal(second, face.end(), face.begin(), face.end() - static_cast<std::ptrdiff_t>(turn));
+}
+
 class Obj {
  public:
     Obj(std::string_view text, const std::string& name) : lines_(text, name, Lines::Continuation::backslash) {}
@@ -75,7 +83,7 @@ class Obj {
             } else if (contains(not_read, statement)) {
                 lines_.fail("'" + std::string(statement) +
                             "' is not read, and a surface may depend on it: expected polygons, 'f', only");
-            } else if (!statement.starts_with('#') && !contains(passed_over, statement)) {
+            } else if (!contains(passed_over, statement)) {
                 if (is_padding(lines_.rest_with_line())) {
                     mesh_.remarks.push_back("line " + std::to_string(lines_.number()) +
                                             ": the file ends with bytes that are no text, which are ignored");
@@ -85,9 +93,10 @@ class Obj {
             }
         }
         if (bent_faces_ > 0) {
-            mesh_.remarks.push_back(std::to_string(bent_faces_) + (bent_faces_ == 1 ? " face is" : " faces are") +
-                                    " not plane, the first in line " + std::to_string(first_bent_line_) +
-                                    ": where such faces are cut into triangles is a choice");
+            mesh_.remarks.push_back(
+                std::to_string(bent_faces_) +
+                (bent_faces_ == 1 ? " face is not plane, in line " : " faces are not plane, the first in line ") +
+                std::to_string(first_bent_line_) + ": where such a face is cut into triangles is a choice");
         }
         return std::move(mesh_);
     }
@@ -110,7 +119,9 @@ class Obj {
     void read_face() {
         const auto& words = lines_.words();
         if (words.size() < 4) {
-            lines_.fail("a face of " + std::to_string(words.size() - 1) + " corners: expected at least 3");
+            const std::size_t count = words.size() - 1;
+            lines_.fail("a face of " + std::to_string(count) + (count == 1 ? " corner" : " corners") +
+                        ": expected at least 3");
         }
         if (mesh_.triangles.size() + words.size() - 3 > max_pieces) {
             lines_.fail("more triangles than expected, which is at most " + std::to_string(max_pieces));
@@ -120,6 +131,9 @@ class Obj {
         for (std::size_t i = 1; i < words.size(); ++i) {
             face_.push_back(vertex_of(words[i]));
             corners_.push_back(mesh_.vertices_m[face_.back()]);
+        }
+        if (goes_around_again(face_)) {
+            lines_.fail("a face whose outline goes around more than once: expected each corner once");
         }
         const FaceCut cut = cut_face(corners_, std::min(max_face_comparisons, comparisons_left_));
         if (cut.comparisons > comparisons_left_) {

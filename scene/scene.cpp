@@ -39,13 +39,14 @@ bool is_near(const Vector3& p_m) {
 /// What to do about a mesh that lies too far from its origin; nothing if it is too large besides.
 std::string remedy_for_far(const Mesh& mesh) {
     BoundingBox bounds{{1, 1, 1}, {-1, -1, -1}};
-    for (const Vector3& vertex : mesh.surface->vertices_m) {
-        const Vector3 p_m = local_m(mesh, vertex);
-        if (!is_finite(p_m)) {
-            return "";
+    for (const auto& triangle : mesh.surface->triangles) {
+        for (const Vector3& p_m : corners_of(mesh, triangle)) {
+            if (!is_finite(p_m)) {
+                return "";
+            }
+            bounds = bounds.low_m[0] > bounds.high_m[0] ? BoundingBox{p_m, p_m} : bounds;
+            bounds.include({p_m, p_m});
         }
-        bounds = bounds.low_m[0] > bounds.high_m[0] ? BoundingBox{p_m, p_m} : bounds;
-        bounds.include({p_m, p_m});
     }
     const Vector3 middle_m = bounds.low_m + 0.5 * (bounds.high_m - bounds.low_m);
     if (!is_near(bounds.low_m - middle_m) || !is_near(bounds.high_m - middle_m)) {
@@ -97,13 +98,27 @@ struct ShapeInspector {
             return has_area(corners_of(mesh, triangle));
         };
         const auto& triangles = surface.triangles;
-        const bool are_near = std::all_of(surface.vertices_m.begin(), surface.vertices_m.end(), is_vertex);
+        const auto far_corner = [&]() -> const Vector3* {
+            for (const auto& triangle : triangles) {
+                for (const std::uint32_t corner : triangle) {
+                    if (!is_vertex(surface.vertices_m[corner])) {
+                        return &surface.vertices_m[corner];
+                    }
+                }
+            }
+            return nullptr;
+        };
         if (require_pieces(triangles.size(), "triangles", ".mesh.file") &&
-            require(are_near, ".mesh.file",
-                    "has a vertex that is not finite or, once scaled, farther than 1e6 m from its origin" +
-                        (are_near ? "" : remedy_for_far(mesh))) &&
             require(std::all_of(triangles.begin(), triangles.end(), is_known), ".mesh.file",
                     "has a triangle with a corner that is not among its vertices")) {
+            if (const Vector3* const corner = far_corner()) {
+                require(false, ".mesh.file",
+                        (mesh.file.empty() ? "" : "'" + mesh.file + "' ") + "has the corner [" +
+                            joined(*corner, ", ", [](double x) { return to_text(x, 12); }) +
+                            "], which is not finite or, once scaled, farther than 1e6 m from its origin" +
+                            remedy_for_far(mesh));
+                return;
+            }
             require(std::any_of(triangles.begin(), triangles.end(), has_extent), ".mesh.file",
                     "has no triangle with an area");
         }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -48,7 +49,8 @@ bool begins_with_solid(std::string_view text) {
 /// Whether a file that is not binary by its size is meant as text.
 bool is_text(std::string_view bytes) {
     const std::string_view begin = beginning_of(bytes);
-    return begins_with_solid(begin) && begin.find('\0') == std::string_view::npos;
+    return (begins_with_solid(begin) || is_same_word(begin.substr(0, 6), "facet ")) &&
+           begin.find('\0') == std::string_view::npos;
 }
 
 /// Whether a file is UTF-16 text.
@@ -166,6 +168,7 @@ class AsciiStl {
     TriangleMesh read() {
         for (bool is_first = true; lines_.next(); is_first = false) {
             expect(!is_first || lines_.starts_with("solid"), "solid");
+            expect_several_lines();
             if (!lines_.starts_with("solid")) {
                 pass_over();
                 continue;
@@ -192,6 +195,17 @@ class AsciiStl {
             mesh_.remarks.push_back("line " + std::to_string(lines_.number()) + ": found '" +
                                     excerpt(lines_.words()[0]) + "' behind 'endsolid', which is ignored");
             is_told_of_rest_ = true;
+        }
+    }
+
+    /// A line that begins a solid ends behind its name.
+    void expect_several_lines() const {
+        const auto& words = lines_.words();
+        const auto is_vertex = [](std::string_view word) { return is_same_word(word, "vertex"); };
+        if (std::any_of(words.begin() + 1, words.end(), is_vertex)) {
+            lines_.fail(
+                "holds a solid with its vertices: expected each of 'solid', 'facet', 'outer loop', 'vertex', "
+                "'endloop', 'endfacet' and 'endsolid' at the beginning of a line");
         }
     }
 

@@ -226,8 +226,9 @@ void check_grid(const std::vector<Entry>& entries, const std::vector<double>& z,
                 bool has_d, LineErrors& errors) {
     for (std::size_t i = 1; i < entries.size(); ++i) {
         if (entries[i].key() == entries[i - 1].key()) {
-            errors.add(entries[i].line,
-                       distance_text(entries[i], has_d) + " is already in line " + std::to_string(entries[i - 1].line));
+            errors.add(entries[i].line, distance_text(entries[i], has_d) + " is already in line " +
+                                            std::to_string(entries[i - 1].line) +
+                                            (has_d ? "" : "; a second distance is a column d_over_r"));
         }
     }
     errors.throw_any();
@@ -250,10 +251,10 @@ std::vector<Entry> entries_of(CsvReader& csv, LineErrors& errors) {
     const auto z = csv.find("z_over_r");
     const auto d = csv.find("d_over_r");
     const auto factor = csv.find("factor") ? csv.find("factor") : csv.find("thrust_ratio");
-    const auto named = std::count_if(csv.names().begin(), csv.names().end(), [](const auto& n) { return !n.empty(); });
-    if (!z || !factor || named != (d ? 3 : 2)) {
+    if (!z || !factor) {
         errors.add(csv.header_line(), "has the columns '" + excerpt(joined(csv.names(), ", ")) +
-                                          "': expected z_over_r,factor or z_over_r,d_over_r,factor");
+                                          "': expected z_over_r,factor or z_over_r,d_over_r,factor" +
+                                          csv.remedy_without({"z_over_r", factor ? "z_over_r" : "factor"}));
         errors.throw_any();
     }
     std::vector<Entry> entries;

@@ -80,7 +80,7 @@ class DOWNWASH_EXPORT EffectTable {
 
 /// Reads a table from a CSV file in any dialect of CsvReader: a header `z_over_r,factor` or
 /// `z_over_r,d_over_r,factor` (`thrust_ratio` is understood for `factor`), then a row for every combination of
-/// distances, in any order. At most 100000 rows and 16 MB.
+/// distances, in any order. Other columns are ignored. At most 100000 rows and 16 MB.
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const EffectTable> read_effect_table(const std::filesystem::path& file);
 

@@ -1,9 +1,12 @@
 #include "downwash/effects/measurements.hpp"
 
+#include <algorithm>
 #include <set>
 #include <utility>
 
 #include "downwash/base/csv_reader.hpp"
+#include "downwash/base/parameter.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/effects/effect_csv.hpp"
 
 namespace downwash {
@@ -37,6 +40,14 @@ Measurements Measurements::with(std::string_view column, std::string_view entry)
     return chosen;
 }
 
+std::optional<std::string> surface_error(const std::string& surface) {
+    const std::vector<std::string_view> known{"ground", "ceiling"};
+    if (surface.empty() || std::find(known.begin(), known.end(), surface) != known.end()) {
+        return std::nullopt;
+    }
+    return "has the surface '" + excerpt(surface) + "'; expected ground or ceiling" + did_you_mean(surface, known);
+}
+
 Measurements parse_measurements(std::string_view text, std::string_view name) {
     LineErrors errors{std::string(name)};
     CsvReader csv(text, errors, effect_csv_limits);
@@ -46,6 +57,12 @@ Measurements parse_measurements(std::string_view text, std::string_view name) {
     errors.throw_any();
     const auto sigma = csv.find("sigma");
     const auto tilt = csv.find("tilt_deg");
+    const auto surface = csv.find("surface");
+    for (const auto column : {surface, csv.find("source")}) {
+        if (column) {
+            csv.use(*column);
+        }
+    }
     Measurements measurements{csv.names(), {}, {}};
     while (csv.next()) {
         Measurement point{0, 0, 0, std::nullopt, csv.line(), {}};
@@ -56,6 +73,11 @@ Measurements parse_measurements(std::string_view text, std::string_view name) {
         }
         if (tilt && !csv.cell(*tilt).empty()) {
             point.tilt_deg = csv.number(*tilt, 0, 90).value_or(0);
+        }
+        if (surface) {
+            if (const auto error = surface_error(std::string(csv.cell(*surface)))) {
+                csv.add_error(*surface, *error);
+            }
         }
         for (std::size_t column = 0; column < csv.names().size(); ++column) {
             point.cells.emplace_back(csv.cell(column));

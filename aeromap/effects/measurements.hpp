@@ -36,9 +36,14 @@ struct DOWNWASH_EXPORT Measurements {
     [[nodiscard]] Measurements with(std::string_view column, std::string_view entry) const;
 };
 
+/// What is wrong with an entry of a column `surface`: "has the surface 'cieling'; expected ground or ceiling". Empty
+/// for those two and for an empty entry.
+[[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> surface_error(const std::string& surface);
+
 /// Reads measurements from a CSV file in any dialect of CsvReader: a header with `z_over_r` (in
 /// [1e-6, 1000]), `thrust_ratio` (in [0, 100]), optionally `sigma` (in [1e-9, 100], or empty) and `tilt_deg` (in [0,
-/// 90], or empty for 0), and any others, for example `surface` and `source`. At most 100000 rows and 16 MB.
+/// 90], or empty for 0), `surface` (`ground`, `ceiling` or empty), and any others, for example `source`. At most 100000
+/// rows and 16 MB.
 /// @throws InputError with "file:line: what is wrong" for each error found
 [[nodiscard]] DOWNWASH_EXPORT Measurements read_measurements(const std::filesystem::path& file);
 

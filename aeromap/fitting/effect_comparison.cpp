@@ -138,14 +138,6 @@ bool is_comparable(const EffectModelInfo& model, const std::string& surface, con
            (!is_multirotor(model.model) || neighbours.rotors() > 1);
 }
 
-std::optional<std::string> surface_error(const std::string& surface) {
-    const std::vector<std::string_view> known{"ground", "ceiling"};
-    if (surface.empty() || std::find(known.begin(), known.end(), surface) != known.end()) {
-        return std::nullopt;
-    }
-    return "has the surface '" + excerpt(surface) + "'; expected ground or ceiling" + did_you_mean(surface, known);
-}
-
 std::vector<DataSetComparison> compare_effects(const std::vector<Measurements>& data, const RotorNeighbours& neighbours,
                                                double max_factor) {
     const std::vector<DataSet> sets = data_sets(data);

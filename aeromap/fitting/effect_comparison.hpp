@@ -50,10 +50,6 @@ inline constexpr std::array error_band_edges{0.0, 0.5, 1.0, 2.0, std::numeric_li
 [[nodiscard]] bool is_comparable(const EffectModelInfo& model, const std::string& surface,
                                  const RotorNeighbours& neighbours);
 
-/// What is wrong with an entry of a column `surface`: "has the surface 'cieling'; expected ground or ceiling". Empty
-/// for those two and for an empty entry.
-[[nodiscard]] DOWNWASH_EXPORT std::optional<std::string> surface_error(const std::string& surface);
-
 /// Compares every model made for a surface with the measurements of each source, surface and tilt: with the parameters
 /// of the model's source and, where level measurements suffice, refitted to them with K unclamped (fit_effect). Over
 /// the ground the effect of a tilted rotor is reduced as default_ground_tilt_loss says.

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "downwash/base/line_errors.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/fit_commands.hpp"
@@ -20,12 +19,12 @@ namespace {
 
 constexpr double max_factor = 2;
 constexpr char explanation[] =
-    "An error is the model's thrust ratio K minus the measured one; K is clamped to [1, 2] as in flight. A positive\n"
-    "error overstates the effect, a negative one understates it. Under a ceiling, overstating is careful: the plan\n"
-    "expects more suction than there is, and only overrates the energy that suction saves. Over the ground,\n"
-    "overstating is optimistic: the plan counts on lift, stiffness and savings that do not exist. Understating has\n"
-    "the opposite consequences. `others`: the RMSE over all level measurements of other sources at that surface.\n"
-    "`level`: the RMSE if a tilted rotor counted as level.\n";
+    "An error is the model's thrust ratio K minus the measured one; K is clamped to [1, 2], as formulas are in\n"
+    "flight (a table may be below 1). A positive error overstates the effect, a negative one understates it. Under\n"
+    "a ceiling, overstating is careful: the plan expects more suction than there is, and only overrates the energy\n"
+    "that suction saves. Over the ground, overstating is optimistic: the plan counts on lift, stiffness and savings\n"
+    "that do not exist. Understating has the opposite consequences. `others`: the RMSE over all level measurements\n"
+    "of other sources at that surface. `level`: the RMSE if a tilted rotor counted as level.\n";
 
 Json parameters_json(const ModelScore& score) {
     auto parameters = Json::object();
@@ -209,21 +208,6 @@ void print_scatter(const std::vector<EffectScatter>& scatters, bool as_markdown)
     fmt::print("\n");
 }
 
-/// @throws InputError with every line that has a surface of no model
-void require_known_surfaces(const Measurements& measurements, const std::string& file) {
-    const auto surface = measurements.index("surface");
-    if (!surface) {
-        return;
-    }
-    LineErrors errors(file);
-    for (const Measurement& point : measurements.points) {
-        if (const auto error = surface_error(point.cells[*surface])) {
-            errors.add(point.line, *error);
-        }
-    }
-    errors.throw_any();
-}
-
 }  // namespace
 
 ExitCode compare_models(const CompareArguments& given) {
@@ -235,7 +219,7 @@ ExitCode compare_models(const CompareArguments& given) {
         MeasuredData of_file = given.data;
         of_file.file = file;
         data.push_back(of_file.read());
-        require_known_surfaces(data.back(), file);
+        static_cast<void>(of_file.warn_of(data.back()));
     }
     const RotorNeighbours neighbours = given.data.neighbours();
     const std::vector<DataSetComparison> comparisons = compare_effects(data, neighbours, max_factor);

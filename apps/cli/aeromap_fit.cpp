@@ -99,7 +99,8 @@ std::string yaml_of(const EffectModelInfo& model, const EffectFit& fit, const st
     return text + "}\n";
 }
 
-void print_fit(const FitArguments& given, const EffectModelInfo& model, const EffectFit& fit) {
+/// @param is_doubtful whether the measurements are likely no thrust ratios
+void print_fit(const FitArguments& given, const EffectModelInfo& model, const EffectFit& fit, bool is_doubtful) {
     fmt::print("{}: {}\n", model.name, model.source);
     for (const FittedParameter& parameter : fit.parameters) {
         fmt::print("{:>16} = {}{}\n", parameter.name, to_text(parameter.value, 7), remark_on(parameter, fit));
@@ -121,6 +122,9 @@ void print_fit(const FitArguments& given, const EffectModelInfo& model, const Ef
     if (!fit.undetermined.empty()) {
         fmt::print("Not determined by these measurements: {}. Keep a known value with --fix, or add other distances.\n",
                    joined(fit.undetermined, ", "));
+    }
+    if (is_doubtful || !fit.undetermined.empty()) {
+        return;  // nothing to be pasted
     }
     const std::string surface = given.data.surface.empty() ? std::string(model.surface) : given.data.surface;
     if (surface == "ground" || surface == "ceiling") {
@@ -304,6 +308,7 @@ ExitCode fit_model(const FitArguments& given) {
         options.fixed.push_back(named_number("--fix", text));
     }
     Measurements measurements = given.data.read();
+    const bool is_doubtful = given.data.warn_of(measurements);
     const std::size_t tilted =
         std::erase_if(measurements.points, [](const Measurement& point) { return point.tilt_deg != 0; });
     if (measurements.points.empty()) {
@@ -328,7 +333,7 @@ ExitCode fit_model(const FitArguments& given) {
     if (given.as_json) {
         print_json(fit_json(known, fit, measurements.points));
     } else {
-        print_fit(given, known, fit);
+        print_fit(given, known, fit, is_doubtful);
     }
     return ExitCode::done;
 }

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "downwash/aeromap/map_cache.hpp"
+#include "downwash/base/csv_dialect.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/model_option.hpp"
@@ -173,12 +174,15 @@ void require_place(const std::array<double, 3>& point_m, const std::string& wher
 }
 
 /// The three numbers of a line; empty when it holds something else.
-std::optional<std::array<double, 3>> point_in(const std::string& line) {
+std::optional<std::array<double, 3>> point_in(std::string line) {
+    const bool has_semicolons = line.find(';') != std::string::npos;  // then commas are decimal
+    std::replace(line.begin(), line.end(), has_semicolons ? ';' : ',', ' ');
     std::array<double, 3> point_m{};
     std::istringstream words(line);
     std::string word;
     for (double& coordinate_m : point_m) {
-        const auto number = words >> word ? parse_number<double>(word) : std::nullopt;
+        const auto number =
+            words >> word ? decimal_number(word, word.find(',') != std::string::npos ? ',' : '.') : std::nullopt;
         if (!number) {
             return std::nullopt;
         }
@@ -187,23 +191,24 @@ std::optional<std::array<double, 3>> point_in(const std::string& line) {
     return words >> word ? std::nullopt : std::optional(point_m);
 }
 
-/// Reads lines of three numbers, separated by blanks or commas. Skips empty lines, comments after # and a line
-/// x_m,y_m,z_m.
+/// Reads lines of three numbers, separated by blanks, commas or semicolons. Skips a byte order mark, empty lines,
+/// comments after # and a line x_m,y_m,z_m.
 std::vector<std::array<double, 3>> read_points(std::istream& lines, const std::string& name) {
     constexpr std::size_t most_points = 1'000'000;
     std::vector<std::array<double, 3>> points;
     std::array<char, 1000> buffer{};
     int number = 1;
     for (; lines.getline(buffer.data(), buffer.size()); ++number) {
-        std::string line(buffer.data());
-        line.erase(std::min(line.find('#'), line.size()));
-        std::replace(line.begin(), line.end(), ',', ' ');
-        if (const std::string_view content = trimmed(line); content.empty() || content.starts_with("x_m")) {
+        constexpr std::string_view mark = "\xEF\xBB\xBF";
+        std::string_view line(buffer.data());
+        line.remove_prefix(number == 1 && line.starts_with(mark) ? mark.size() : 0);
+        line = trimmed(line.substr(0, line.find('#')));
+        if (line.empty() || is_same_word(line.substr(0, 3), "x_m") || line.starts_with("\"x_m")) {
             continue;
         }
-        const auto point_m = point_in(line);
+        const auto point_m = point_in(std::string(line));
         if (!point_m) {
-            throw UsageError("{}:{}: '{}': expected three numbers, x_m y_m z_m", name, number, excerpt(trimmed(line)));
+            throw UsageError("{}:{}: '{}': expected three numbers, x_m y_m z_m", name, number, excerpt(line));
         }
         require_place(*point_m, fmt::format("{}:{}:", name, number));
         if (points.size() == most_points) {

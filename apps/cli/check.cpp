@@ -1,8 +1,10 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <initializer_list>
 #include <optional>
 #include <set>
 #include <string>
@@ -58,11 +60,23 @@ std::string kind_of(const std::string& path) {
     return "problem";
 }
 
+/// Where a problem names files of its scene; nothing for the endings of other files.
+std::string key_of_scene_file(const std::string& path) {
+    const std::string ending = fs::path(path).extension().string();
+    const auto is_one_of = [&ending](std::initializer_list<const char*> endings) {
+        return std::any_of(endings.begin(), endings.end(),
+                           [&ending](const char* each) { return is_same_word(ending, each); });
+    };
+    return is_one_of({".stl", ".obj"}) ? "environment.obstacles[].mesh.file"
+           : is_one_of({".bt", ".ot"}) ? "environment.obstacles[].octomap.file"
+                                       : "";
+}
+
 struct Findings {
     std::vector<LocatedError> errors;
     std::vector<LocatedError> warnings;  ///< keys by their former names included
-    // What was read, one of them unless there are errors or the file is a campaign:
-    std::optional<PlannableProblem> problem;
+    // What was read, one of them unless the file is a campaign; with errors a problem only:
+    std::optional<ProblemReading> problem;
     std::optional<Robot> robot;
     std::optional<DataFacts> data;
 };
@@ -97,6 +111,12 @@ LocatedError located(const std::string& path, const std::string& message) {
 Findings findings_in(const std::string& path) {
     Findings found;
     const auto on_warning = [&found](const LocatedError& warning) { found.warnings.push_back(warning); };
+    if (const std::string key = key_of_scene_file(path); !key.empty()) {
+        found.errors.push_back({path, 1, 1,
+                                "is part of a scene: expected a problem that names it in " + key +
+                                    ", a robot, a campaign, or numbers in a file that ends in .csv or .tsv"});
+        return found;
+    }
     try {
         const std::string kind = kind_of(path);
         if (kind == "robot") {
@@ -105,8 +125,13 @@ Findings findings_in(const std::string& path) {
             static_cast<void>(read_campaign(path, on_warning, on_warning));
         } else if (kind == "data") {
             found.data = read_data_file(path);
+            for (const std::string& remark : data_remarks(*found.data)) {
+                found.warnings.push_back({path, 1, 1, remark});
+            }
         } else {
-            found.problem = read_plannable_problem(path, {}, on_warning, on_warning);
+            found.problem = examine_problem(path);
+            found.errors = found.problem->errors;
+            found.warnings = found.problem->warnings;
         }
     } catch (const ProblemFileError& error) {
         found.errors = error.errors();
@@ -146,12 +171,17 @@ std::string add_inputs(const std::string& path, const Findings& found, ReadLists
         add(lists.data, {{"problem", nullptr}}, data_document(*found.data), text_of(*found.data));
     }
     if (found.problem) {
-        const InputFacts inputs = input_facts(found.problem->problem, found.problem->model->scene());
-        add(lists.robots, {{"problem", path}, {"file", nullptr}}, robot_document(inputs.robot), text_of(inputs.robot));
-        for (const GeometryInput& each : inputs.geometry) {
-            add(lists.geometry, {{"problem", path}}, geometry_document(each), text_of(each));
+        const ProblemReading& read = *found.problem;
+        if (!read.wrong.touch("robot")) {
+            const RobotInput robot{read.problem.robot.name, robot_facts(read.problem.robot)};
+            add(lists.robots, {{"problem", path}, {"file", nullptr}}, robot_document(robot), text_of(robot));
         }
-        for (const DataFacts& each : inputs.data) {
+        if (read.scene != nullptr) {
+            for (const GeometryInput& each : geometry_inputs(*read.scene)) {
+                add(lists.geometry, {{"problem", path}}, geometry_document(each), text_of(each));
+            }
+        }
+        for (const DataFacts& each : read.wrong.touch("aero") ? std::vector<DataFacts>() : data_facts(read.problem)) {
             add(lists.data, {{"problem", path}}, data_document(each), text_of(each));
         }
     }
@@ -184,27 +214,27 @@ void require_drawable_request(const CheckArguments& given) {
     }
 }
 
-/// Draws the problem before it is planned. Both files are made before one is written.
+/// Draws the problem before it is planned; with errors the picture only. Both files are made before one is written.
 void draw_problem(const CheckArguments& given, const Findings& found) {
-    const PlannableProblem& plannable = *found.problem;
-    const Problem& problem = plannable.problem;
+    const ProblemReading& read = *found.problem;
+    const Problem& problem = read.problem;
     std::string picture, page;
     if (given.picture) {
         PictureSettings settings;
         settings.format = picture_format("--picture", *given.picture);
         settings.threads = default_threads();
-        picture = draw(problem_figure(problem, *plannable.model), settings);
+        picture = draw(problem_figure(problem, *read.model), settings);
     }
-    if (given.page) {
+    if (given.page && read.errors.empty()) {
         const fs::path folder = fs::absolute(*given.page).parent_path();
         const ProblemReference reference{
             problem.name,   given.problems.front(), problem_sha256(problem),
-            found.warnings, problem.axes(),         input_facts(problem, plannable.model->scene())};
-        page = problem_page(problem, reference, effective_yaml(problem, folder), *plannable.model, default_threads());
+            found.warnings, problem.axes(),         input_facts(problem, read.model->scene())};
+        page = problem_page(problem, reference, effective_yaml(problem, folder), *read.model, default_threads());
     }
     const auto write = [&given](const std::optional<std::string>& file, const std::string& content,
                                 const char* option) {
-        if (file) {
+        if (file && !content.empty()) {
             write_result(*file, content, option);
             if (!given.as_json) {
                 fmt::print("{}\n", *file);
@@ -243,12 +273,14 @@ ExitCode run(const CheckArguments& given) {
             }
         }
         const std::string lines = add_inputs(path, found, lists);
-        if (found.errors.empty() && !given.as_json) {
-            const std::size_t count = found.warnings.size();
-            fmt::print("{}: ok{}\n{}", path,
-                       count == 0 ? "" : fmt::format(", {} warning{}", count, count == 1 ? "" : "s"), lines);
+        if (!given.as_json && (found.errors.empty() || !lines.empty())) {
+            const auto counted = [](std::size_t count, const char* thing) {
+                return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+            };
+            fmt::print("{}: {}{}\n{}", path, found.errors.empty() ? "ok" : counted(found.errors.size(), "error"),
+                       found.warnings.empty() ? "" : ", " + counted(found.warnings.size(), "warning"), lines);
         }
-        if (given.draws() && found.problem) {
+        if (given.draws() && found.problem && found.problem->model != nullptr) {
             draw_problem(given, found);
         }
     }

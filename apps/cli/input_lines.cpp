@@ -57,7 +57,7 @@ std::string dialect_text(const CsvFacts& csv) {
 }
 
 std::string columns_text(const CsvFacts& csv) {
-    const auto listed = [](const std::vector<std::string>& names, const auto& text) {
+    const auto listed = [](const auto& names, const auto& text) {
         constexpr std::size_t most = 6;
         std::string list;
         for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
@@ -65,11 +65,15 @@ std::string columns_text(const CsvFacts& csv) {
         }
         return names.size() > most ? list + fmt::format(" and {} more", names.size() - most) : list;
     };
-    const auto with_unit = [](const std::string& name) {
-        const std::string_view unit = unit_of_column(name);
-        return unit == "1" ? excerpt(name) : fmt::format("{} [{}]", excerpt(name), unit);
+    const auto with_range = [](const CsvColumn& column) {
+        if (!column.has_numbers()) {
+            return excerpt(column.name);
+        }
+        const std::string_view unit = unit_of_column(column.name);
+        return fmt::format("{}{} {} to {}", excerpt(column.name), unit == "1" ? "" : fmt::format(" [{}]", unit),
+                           rounded(column.low), rounded(column.high));
     };
-    std::string text = listed(csv.used, with_unit);
+    std::string text = listed(csv.used, with_range);
     if (!csv.others.empty()) {
         text += "; other columns: " + listed(csv.others, excerpt);
     }
@@ -109,11 +113,11 @@ std::string text_of(const GeometryInput& geometry) {
     const auto range = [&extent](std::size_t k) {
         return fmt::format("{} to {} m", to_text(extent.low_m[k], 6), to_text(extent.high_m[k], 6));
     };
-    return fmt::format("{}: {} of {} {}, {}, {}{}, x {}, y {}, z {} in the world",
-                       geometry.name.empty() ? geometry.key : excerpt(geometry.name),
-                       geometry.is_mesh ? "mesh" : "octree", facts.element_count,
-                       geometry.is_mesh ? "triangles" : "cubes", counted(surface.pieces, "piece"),
-                       surface_name(surface), unseen_text(geometry), range(0), range(1), range(2));
+    return fmt::format(
+        "{}: {} of {}, {}, {}{}, x {}, y {}, z {} in the world",
+        geometry.name.empty() ? geometry.key : excerpt(geometry.name), geometry.is_mesh ? "mesh" : "octree",
+        counted(facts.element_count, geometry.is_mesh ? "triangle" : "cube"), counted(surface.pieces, "piece"),
+        surface_name(surface), unseen_text(geometry), range(0), range(1), range(2));
 }
 
 std::string text_of(const RobotInput& robot) {

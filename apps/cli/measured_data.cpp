@@ -9,7 +9,10 @@
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/problems/data_facts.hpp"
+#include "downwash/problems/located_error.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -84,6 +87,14 @@ Measurements MeasuredData::read() const {
         throw UsageError("--from and --to leave no measurement of " + file);
     }
     return measurements;
+}
+
+bool MeasuredData::warn_of(const Measurements& measurements) const {
+    const std::vector<std::string> remarks = data_remarks({"", file, DataKind::measurements, measurements.csv});
+    for (const std::string& remark : remarks) {
+        print_warning({file, 1, 1, remark});
+    }
+    return !remarks.empty();
 }
 
 RotorNeighbours MeasuredData::neighbours() const {

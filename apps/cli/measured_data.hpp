@@ -37,6 +37,9 @@ struct MeasuredData {
     /// @throws InputError, UsageError when nothing is left
     [[nodiscard]] Measurements read() const;
 
+    /// Warns of ratios and distances that are likely in another unit; whether there are any.
+    [[nodiscard]] bool warn_of(const Measurements& measurements) const;
+
     /// @throws UsageError
     [[nodiscard]] RotorNeighbours neighbours() const;
 };

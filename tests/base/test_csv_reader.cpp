@@ -182,9 +182,11 @@ TEST_CASE("quoted cells hold separators, quotation marks and ends of lines") {
 TEST_CASE("what the look of a number does not say is an error that says how to write it") {
     const std::string head = "z;k\n";
     CHECK(error_of(head + "1;1,234\n") ==
-          "t.csv:2:3: k is '1,234', which may mean 1.234 or 1234: expected one of these");
+          "t.csv:2:3: k is '1,234', which may mean 1.234 or 1234: expected one of these; add a zero to "
+          "its decimals, or leave out what stands between thousands");
     CHECK(error_of("z,k\n1,\"1,234\"\n") ==
-          "t.csv:2:3: k is '1,234', which may mean 1.234 or 1234: expected one of these");
+          "t.csv:2:3: k is '1,234', which may mean 1.234 or 1234: expected one of these; add a zero to "
+          "its decimals, or leave out what stands between thousands");
     CHECK(read(head + "1;1,234\n2;0,5\n").k == std::vector{1.234, 0.5});
     CHECK(read(head + "1;1.234\n").k == std::vector{1.234});
     CHECK(read(head + "1;0,750\n").k == std::vector{0.75});
@@ -195,6 +197,10 @@ TEST_CASE("what the look of a number does not say is an error that says how to w
     CHECK(
         error_of(head + "0,5;2\n1.234;2\n") ==
         "t.csv:3:1: z is '1.234', with a point, but a number in line 2 has a decimal comma: expected one decimal sign "
+        "in the whole file, and none between thousands");
+    CHECK(
+        error_of(head + "1.234;1,234\n") ==
+        "t.csv:2:7: k is '1,234', with a comma, but a number in line 2 has a decimal point: expected one decimal sign "
         "in the whole file, and none between thousands");
     CHECK(error_of(head + "1.234,5;2\n") == "t.csv:2:1: z is '1.234,5': expected a number from -1000000 to 1000000");
     // Decimal commas between commas: told once, though it is so in every line.
@@ -274,8 +280,63 @@ TEST_CASE("facts tell the dialect, the rows and which columns were read as numbe
     CHECK(facts.separator == ';');
     CHECK(facts.decimal_sign == ',');
     CHECK(facts.rows == 2);
-    CHECK(facts.used == Row{"z", "k"});
+    REQUIRE(facts.used.size() == 2);
+    CHECK(facts.used[0].name == "z");
+    CHECK(facts.used[0].low == 0.5);
+    CHECK(facts.used[0].high == 1);
+    CHECK(facts.used[1].name == "k");
+    CHECK(facts.used[1].low == 1.25);
+    CHECK(facts.used[1].high == 1.5);
+    CHECK(facts.used[1].has_numbers());
     CHECK(facts.others == Row{"note"});
+}
+
+TEST_CASE("a column of words that was read is no other column and has no range") {
+    LineErrors errors("t.csv");
+    CsvReader csv("z,where,note\n1,a,b\n", errors, {1000, 10});
+    csv.use(1);
+    REQUIRE(csv.next());
+    CHECK(csv.number(0) == 1.0);
+    const CsvFacts facts = csv.facts();
+    REQUIRE(facts.used.size() == 2);
+    CHECK(facts.used[1].name == "where");
+    CHECK_FALSE(facts.used[1].has_numbers());
+    CHECK(facts.others == Row{"note"});
+}
+
+TEST_CASE("the range of a column tells decimals from thousands where only one of both is within") {
+    LineErrors errors("t.csv");
+    CsvReader csv("z;k\n1;1,058\n2;1,020\n", errors, {1000, 10});
+    REQUIRE(csv.next());
+    CHECK(csv.number(0, 0, 1000) == 1.0);
+    CHECK(csv.number(1, 0, 100) == 1.058);
+    REQUIRE(csv.next());
+    CHECK(csv.number(1, 0, 100) == 1.02);
+    errors.throw_any();
+    CHECK(csv.facts().decimal_sign == ',');
+    LineErrors of_large("t.csv");
+    CsvReader large("k;n\n1,200;2\n", of_large, {1000, 10});
+    REQUIRE(large.next());
+    CHECK(large.number(0, 1000, 2000) == 1200.0);
+}
+
+TEST_CASE("names and numbers that are nearly right are errors with what to write") {
+    using Catch::Contains;
+    CHECK_THAT(error_of("z [-],k [%]\n1,2\n"),
+               Contains("; write 'z [-]' as z") && Contains("; write 'k [%]' as k, and divide percent by 100"));
+    CHECK_THAT(error_of("z|k\n1|2\n"), Contains("; separate columns by ';', tabs or ',', not by '|'"));
+    CHECK_THAT(error_of("Stand 3\nz,k\n1,2\n"),
+               Contains("; the names seem to stand in line 2: begin the lines above with #"));
+    CHECK_THAT(error_of("z,k\nm,-\n1,2\n"),
+               Contains("t.csv:2:1: z is 'm'") && Contains("; if this is a line of units, begin it with #"));
+    CHECK_THAT(error_of("\"z\" \"k\"\n\"1\" 0.5 1.2\n\"2\" 1 1.1\n"), Contains("(row.names = FALSE)"));
+    CHECK_THAT(error_of("z,k\n1,1'000\n"), Contains("; leave out its apostrophes"));
+    CHECK_THAT(error_of("z,k\n1,1\xE2\x80\xAF"
+                        "000\n"),
+               Contains("U+202F"));
+    CHECK_THAT(error_of("z,k\n1,1.21D0\n"), Contains("; write its exponent with 'e', not 'D'"));
+    CHECK_THAT(error_of("z,k\n1,21%\n"), Contains("; divide percent by 100"));
+    CHECK_THAT(error_of("z,k\n1,much\n"), !Contains(";"));
 }
 
 TEST_CASE("a text becomes one cell") {
@@ -283,15 +344,20 @@ TEST_CASE("a text becomes one cell") {
     CHECK(csv_cell("a,\"b\"") == "\"a,\"\"b\"\"\"");
 }
 
-TEST_CASE("errors of a file name their lines, and the twentieth ends the reading") {
+TEST_CASE("errors of a file name their lines, and those beyond the twentieth are counted") {
     LineErrors errors("a.csv");
     errors.throw_any();
     errors.add(0, "is empty");
     errors.add(3, "is short");
     errors.add(4, 7, "is no number");
     CHECK_THROWS_WITH(errors.throw_any(), "a.csv: is empty\na.csv:3: is short\na.csv:4:7: is no number");
-    for (std::size_t line = 4; line < 20; ++line) {
+    for (std::size_t line = 4; line < 21; ++line) {
         errors.add(line, "is wrong");
     }
-    CHECK_THROWS_AS(errors.add(20, "is wrong"), InputError);
+    const auto said = [&errors] { return test::error_of([&] { return errors.throw_any(), 0; }); };
+    CHECK(said().ends_with("\na.csv:20: is wrong"));
+    errors.add(21, "is wrong");
+    CHECK(said().ends_with("\na.csv:20: is wrong\na.csv: and 1 more error"));
+    errors.add(22, "is wrong");
+    CHECK(said().ends_with("\na.csv:20: is wrong\na.csv: and 2 more errors"));
 }

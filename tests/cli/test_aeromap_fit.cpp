@@ -50,7 +50,7 @@ TEST_CASE("A fit for people ends with the lines for a problem file, and tells wh
     const std::string said = work.run(fit).out;
     const auto warned = said.find("Not determined by these measurements: a, b. Keep a known value with --fix");
     REQUIRE(warned != std::string::npos);
-    CHECK(warned < said.find("For a problem file"));
+    CHECK_THAT(said, !Contains("For a problem file"));
     CHECK_THAT(work.run(fit, "--fix b=2").out, !Contains("ot determined"));
     // At a millionth of a radius no decay changes anything; three measurements are more than two parameters all the
     // same.
@@ -68,6 +68,14 @@ TEST_CASE("A fit for people ends with the lines for a problem file, and tells wh
     CHECK(of_both.json().at("n") == 45);
     CHECK(of_both.json().at("parameters") == nlohmann::json::object());
     CHECK_THAT(of_both.err, Contains("several surfaces"));
+}
+
+TEST_CASE("Measurements that are likely no thrust ratios are fitted with a warning and no lines to paste") {
+    const Workspace work;
+    write_file(work / "percent.csv", "z_over_r,thrust_ratio\n0.5,21\n1,5.8\n2,1.3\n3,0.4\n");
+    const Result fit = work.run("aeromap fit", work / "percent.csv", "--model he --surface ground");
+    CHECK_THAT(fit.err, Contains("thrust_ratio from 0.4 to 21, far above"));
+    CHECK_THAT(fit.out, !Contains("For a problem file"));
 }
 
 TEST_CASE("Points can be left out and weighted") {

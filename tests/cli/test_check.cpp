@@ -77,18 +77,21 @@ TEST_CASE("Check tells how files of numbers were read, those of problems and by 
     CHECK(data[0].at("rows") == 4);
     CHECK(data[0].at("separator") == ";");
     CHECK(data[0].at("decimal_sign") == ",");
-    CHECK(data[0].at("columns").at(1) == nlohmann::json{{"name", "d_over_r"}, {"unit", "rotor radii"}});
-    CHECK_THAT(work.succeed("check", problem).out,
-               Contains("  k.csv: effect table of 4 rows, z_over_r [rotor radii], d_over_r [rotor radii], factor; "
-                        "separated by ';', decimal commas\n"));
+    CHECK(data[0].at("columns").at(1) ==
+          nlohmann::json{{"name", "d_over_r"}, {"unit", "rotor radii"}, {"low", 0}, {"high", 9}});
+    CHECK_THAT(
+        work.succeed("check", problem).out,
+        Contains("  k.csv: effect table of 4 rows, z_over_r [rotor radii] 0.5 to 2, d_over_r [rotor radii] 0 to 9, "
+                 "factor 1 to 1.3; separated by ';', decimal commas\n"));
 
     const auto measured = work.json("check", DOWNWASH_MEASUREMENTS, DOWNWASH_WALLS, work / "k.csv").at("data");
     REQUIRE(measured.size() == 3);
     CHECK(measured[0].at("kind") == "measurements");
     CHECK(measured[0].at("problem").is_null());
     CHECK(measured[0].at("key").is_null());
-    const auto& others = measured[0].at("other_columns");
-    CHECK(std::find(others.begin(), others.end(), "surface") != others.end());
+    CHECK(measured[0].at("other_columns") == nlohmann::json{"rotor_diameter_in", "pwm_level"});
+    CHECK(measured[0].at("columns").at(1) ==
+          nlohmann::json{{"name", "surface"}, {"unit", nullptr}, {"low", nullptr}, {"high", nullptr}});
     CHECK(measured[1].at("kind") == "wall_measurements");
     CHECK(measured[1].at("rows") == 55);
     CHECK(measured[2].at("kind") == "effect_table");
@@ -106,6 +109,31 @@ TEST_CASE("Check tells how files of numbers were read, those of problems and by 
     CHECK_THAT(fault.at("message"), StartsWith("thrust_ratio is 'much'"));
     CHECK_THAT(bad.err, Contains("bad.csv:3:3: thrust_ratio is 'much'"));
     CHECK_THAT(work.run("check nowhere.csv").err, StartsWith("nowhere.csv:1:1: "));
+    check_rejected(work.run("check pier.STL"),
+                   "pier.STL:1:1: is part of a scene: expected a problem that names it in "
+                   "environment.obstacles[].mesh.file");
+}
+
+TEST_CASE("Beside errors check tells what was read, and draws what it could read") {
+    const Workspace work;
+    write_file(work / "wall.obj", "v 3 0 0\nv 3 0 5\nv 3 3 5\nv 3 3 0\nf 1 2 3 4\n");
+    const std::string file = work / "wall.yaml";
+    write_file(file, std::regex_replace(problem_text("open_air"), std::regex("(    - \\{name: ground)"),
+                                        "    - {name: wall, mesh: {file: wall.obj}}\n$1") +
+                         "\nnot_a_key: 1\n");
+    const Result found = work.run("check", file, "--picture before.svg");
+    CHECK(found.code == 2);
+    CHECK_THAT(found.err, Contains("not_a_key") && Contains("is open at 4 edges"));
+    CHECK_THAT(found.out, StartsWith(file + ": 1 error, 1 warning\n") && Contains("\n  wall: mesh of 2 triangles, "));
+    CHECK_THAT(work.text("before.svg"), Contains("<svg"));
+    const auto json = work.run("check", file, "--json").json();
+    CHECK(json.at("faults").size() == 1);
+    CHECK(json.at("warnings").size() == 1);
+    CHECK(json.at("geometry").size() == 1);
+    CHECK(json.at("robots").size() == 1);
+    write_file(file, replaced(read_file(file), "wall.obj", "nowhere.obj"));
+    const Result unread = work.run("check", file, "--picture none.svg");
+    CHECK_THAT(unread.out, !Contains("mesh of") && !Contains("none.svg"));
 }
 
 TEST_CASE("Solve tells the same in its summary and in its results, again from effective.yaml") {

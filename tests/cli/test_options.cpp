@@ -267,7 +267,7 @@ TEST_CASE("Check tells what became of meshes and octrees in the world, and solve
     REQUIRE(found.at("warnings").size() == 2);
     CHECK_THAT(found.at("warnings").at(0).at("message"), Contains("is open at 4 edges"));
     CHECK_THAT(found.at("warnings").at(1).at("message"),
-               Contains("near with `scale: 0.001` and `rpy_deg: [90, 0, 0]`"));
+               Contains("near with `scale: 0.001` (3 m long)") && Contains(" and `rpy_deg: [90, 0, 0]`"));
     const Result solved = work.run("solve", file, "--max-iterations 1 --quiet --json --out out");
     CHECK(solved.json().at("warnings") == found.at("warnings"));
     CHECK_THAT(work.run("solve", file, "--max-iterations 1 --out out").err,

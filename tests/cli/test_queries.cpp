@@ -48,6 +48,12 @@ TEST_CASE("Many points are read from a file or from standard input, after those 
     CHECK(points[1].at("x_m") == 1);
     write_file(work.in_run("points.txt"), "0 0 1\n0 zero 1\n");
     check_rejected(work.run(query, "--points points.txt"), "points.txt:2:");
+    write_file(work.in_run("points.txt"),
+               "\xEF\xBB\xBF"
+               "X_m;y_m;z_m\r\n0;0,32;9,8\r\n1;0;3\r\n");
+    CHECK(work.json(query, "--points points.txt").at("points") == points);
+    write_file(work.in_run("points.txt"), "0,0 # two\n");
+    check_rejected(work.run(query, "--points points.txt"), "points.txt:1: '0,0': expected three numbers");
     CHECK(work.run(query, "--at 1 2 3 4").code == 2);
     check_rejected(work.run(query, "--at 1 2"), "--at takes 3 values: expected --at X Y Z: ");
     const auto asked = [&](const char* options, const std::string& input) {

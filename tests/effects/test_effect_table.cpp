@@ -207,6 +207,9 @@ TEST_CASE("A table is read from rows in any order") {
     CHECK(parse_effect_table(";z_over_r;factor\n0;1;1,5\n1;2;1,1\n", "t.csv")->at()(1) == 1.5);
     CHECK(parse_effect_table("Unnamed: 0,z_over_r,factor\n0,1,1.5\n1,2,1.1\n", "t.csv")->at()(1) == 1.5);
     CHECK(plain->at()(1) == 1.5);
+    const auto noted = parse_effect_table("z_over_r,factor,rpm\n1,1.5,4000\n2,1.1,4000\n", "t.csv");
+    CHECK(noted->at()(1) == 1.5);
+    CHECK(noted->csv().others == std::vector<std::string>{"rpm"});
 }
 
 TEST_CASE("Tables that cannot be used are errors with their line") {
@@ -220,7 +223,9 @@ TEST_CASE("Tables that cannot be used are errors with their line") {
              {"# nothing\n", ": holds no table: expected a line with the names of its columns, then rows"},
              {head, ":1: no rows follow: expected a table of two or more distances"},
              {"#\nz_over_r:factor\n1:2\n", ":2: has the columns 'z_over_r:factor': " + columns},
-             {"z_over_r,factor,rpm\n1,2,3\n", ":1: has the columns 'z_over_r, factor, rpm': " + columns},
+             {"z_over_r,K\n1,2\n", ":1: has the columns 'z_over_r, K': " + columns},
+             {"z_over_r,factor [-]\n1,2\n",
+              ":1: has the columns 'z_over_r, factor [-]': " + columns + "; write 'factor [-]' as factor"},
              {"z_over_r,z_over_r\n", ":1:10: the column 'z_over_r' occurs twice"},
              {head + "1,1.2,3\n", ":2: holds 3 cells: expected 2, one for each column of line 1"},
              {head + "1,1.2\n\n2,\n", ":4:3: factor is ''" + no_factor},
@@ -230,7 +235,8 @@ TEST_CASE("Tables that cannot be used are errors with their line") {
                   "\nt.csv:6:3: factor is '1.2x'" + no_factor},
              {head + "-1,1.2\n2,1\n", ":2:1: z_over_r is '-1': expected a number from 0 to 1000"},
              {head + "1,1.2\n1.0,1.1\n", ": z_over_r is 1 in every row: expected two or more distances"},
-             {head + "1,1.2\n2,1.1\n1.0,1.3\n", ":4: z_over_r 1 is already in line 2"},
+             {head + "1,1.2\n2,1.1\n1.0,1.3\n",
+              ":4: z_over_r 1 is already in line 2; a second distance is a column d_over_r"},
              {head + "1,1.2\n1.0000001,1.1\n",
               ":3: z_over_r 1.0000001 is hardly above 1: expected steps of at least 1e-6, or exactly the same "
               "number"},
@@ -247,7 +253,8 @@ TEST_CASE("Long files are errors before they fill the memory, and not every erro
     CHECK(error_of("z_over_r,factor\n" + repeated("1,1\n", 100'001)) ==
           "t.csv:100002: is row 100001: expected at most 100000");
     const std::string errors = error_of("z_over_r,factor\n" + repeated("x,1\n", 1000));
-    CHECK(std::count(errors.begin(), errors.end(), '\n') == 19);
+    CHECK(std::count(errors.begin(), errors.end(), '\n') == 20);
+    CHECK_THAT(errors, Catch::EndsWith(": and 980 more errors"));
     // Distances that make a grid of 2.5e9 nodes where there are 50000 rows.
     std::string sparse = "z_over_r,d_over_r,factor\n";
     for (int i = 0; i < 50'000; ++i) {

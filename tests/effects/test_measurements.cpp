@@ -55,5 +55,8 @@ TEST_CASE("Measurements that cannot be used are errors with their line") {
           "m.csv:4:1: z_over_r is 'nan': expected a number from 1e-06 to 1000");
     CHECK(error("z_over_r,thrust_ratio,sigma\n1,1,\n1,1,0.1\n1,1,0\n") ==
           "m.csv:4:5: sigma is '0': expected a number from 1e-09 to 100");
+    CHECK(error("surface,z_over_r,thrust_ratio\nground,1,1\nBoden,1,1\n,2,1\ncieling,1,1\n") ==
+          "m.csv:3:1: has the surface 'Boden'; expected ground or ceiling\n"
+          "m.csv:5:1: has the surface 'cieling'; expected ground or ceiling; did you mean 'ceiling'?");
     CHECK_THROWS_WITH(read_measurements("/nowhere.csv"), "/nowhere.csv cannot be read: there is no such file");
 }

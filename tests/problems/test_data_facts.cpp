@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
@@ -16,6 +17,14 @@ namespace {
 
 using Names = std::vector<std::string>;
 
+Names names(const std::vector<CsvColumn>& columns) {
+    Names all;
+    for (const CsvColumn& column : columns) {
+        all.push_back(column.name);
+    }
+    return all;
+}
+
 DataFacts read(const std::string& text) {
     const test::ScratchFolder folder;
     write_file(folder / "data.csv", text);
@@ -31,7 +40,7 @@ TEST_CASE("The columns of a file of numbers tell its kind, and its dialect is to
     CHECK(grid.csv.rows == 4);
     CHECK(grid.csv.separator == ',');
     CHECK(grid.csv.decimal_sign == '.');
-    CHECK(grid.csv.used == Names{"x_m", "z_m", "factor"});
+    CHECK(names(grid.csv.used) == Names{"x_m", "z_m", "factor"});
     CHECK(grid.csv.others == Names{"pressure"});
 
     const DataFacts paraview = read(
@@ -40,7 +49,7 @@ TEST_CASE("The columns of a file of numbers tell its kind, and its dialect is to
     CHECK(paraview.kind == DataKind::grid);
     CHECK(paraview.csv.separator == ';');
     CHECK(paraview.csv.decimal_sign == ',');
-    CHECK(paraview.csv.used.front() == "Points:0");
+    CHECK(paraview.csv.used.front().name == "Points:0");
 
     const DataFacts table = read("z_over_r\tfactor\n0.5\t1.3\n1\t1.1\n2\t1\n");
     CHECK(table.kind == DataKind::effect_table);
@@ -49,13 +58,50 @@ TEST_CASE("The columns of a file of numbers tell its kind, and its dialect is to
 
     const DataFacts measured = read("source,z_over_r,thrust_ratio,sigma\nbench,1,1.1,\nbench,2,1.05,\n");
     CHECK(measured.kind == DataKind::measurements);
-    CHECK(measured.csv.used == Names{"z_over_r", "thrust_ratio"});
-    CHECK(measured.csv.others == Names{"source", "sigma"});  // whose cells are empty
+    CHECK(names(measured.csv.used) == Names{"source", "z_over_r", "thrust_ratio"});
+    CHECK(measured.csv.others == Names{"sigma"});  // whose cells are empty
 
     const DataFacts walls =
         read("distance_over_r force_over_thrust moment_over_thrust_radius\n1.5 0.01 0.02\n2.5 0.005 0.01\n");
     CHECK(walls.kind == DataKind::wall_measurements);
     CHECK(walls.csv.separator == ' ');
+}
+
+TEST_CASE("Ratios that are gains or percent, distances not in radii and columns that nothing reads are remarks") {
+    const auto remarks = [](const std::string& text) { return data_remarks(read(text)); };
+    CHECK(remarks("z_over_r,factor\n0.5,1.3\n4,1\n").empty());
+    CHECK(remarks("z_over_r,factor\n0.5,0.9\n4,1\n").empty());  // a table may be below one near by
+    const auto gains = remarks("z_over_r,factor\n0.5,0.3\n4,0.01\n");
+    REQUIRE(gains.size() == 1);
+    CHECK_THAT(gains[0], Contains("factor from 0.01 to 0.3, below 1 throughout") && Contains("to gains add 1"));
+    const auto percent = remarks("z_over_r,thrust_ratio\n0.5,30\n4,1\n");
+    REQUIRE(percent.size() == 1);
+    CHECK_THAT(percent[0], Contains("thrust_ratio from 1 to 30, far above") && Contains("divide percent by 100"));
+    CHECK(data_remarks(read("z_over_r,factor\n0.5,5\n4,1\n"), 3).empty());
+    CHECK(remarks("x_m,z_m,factor\n0,0,0.02\n1,0,0.02\n0,1,0.02\n1,1,0.02\n").size() == 1);
+    const auto far = remarks("z_over_r,factor\n100,1.3\n400,1.05\n");
+    REQUIRE(far.size() == 1);
+    CHECK_THAT(far[0], Contains("z_over_r from 100 to 400") && Contains("over the rotor radius"));
+    const auto noted = remarks("z_over_r,factor,rpm,note\n0.5,1.3,1,a\n4,1,1,b\n");
+    REQUIRE(noted.size() == 1);
+    CHECK_THAT(noted[0], Contains("columns that are not read: rpm, note"));
+    CHECK(remarks("source,z_over_r,thrust_ratio,rpm\na,0.5,1.3,7\n").empty());
+}
+
+TEST_CASE("Remarks on the files of a problem are among its warnings") {
+    Problem problem = test::ceiling_problem();
+    const std::size_t before = problem_warnings(problem).size();
+    problem.aero.ceiling = EffectModel::table;
+    problem.aero.ceiling.file = "k.csv";
+    problem.aero.ceiling.table = parse_effect_table("z_over_r,factor\n0.5,0.3\n4,0.01\n", "k.csv");
+    const std::vector<KeyError> warnings = problem_warnings(problem);
+    REQUIRE(warnings.size() == before + 1);
+    const auto found = std::find_if(warnings.begin(), warnings.end(),
+                                    [](const KeyError& warning) { return warning.key == "aero.ceiling.file"; });
+    REQUIRE(found != warnings.end());
+    CHECK_THAT(found->message, Contains("'k.csv' has factor from 0.01 to 0.3"));
+    problem.aero.enabled = false;
+    CHECK(problem_warnings(problem).size() == before);
 }
 
 TEST_CASE("A file of numbers without columns of a kind, or with an error, is told with its line") {

@@ -118,9 +118,13 @@ TEST_CASE("surfaces that cannot be placed are errors at their obstacle") {
     CHECK_THAT(errors_with(folder, "mesh: {file: line.obj}"),
                Catch::StartsWith("problem.yaml:8:") && Catch::Contains("area"));
     folder.write("pole.stl", binary_stl(pole_triangles()));
-    CHECK(errors_with(folder, "mesh: {file: pole.stl, scale: 1e6}") ==
-          "problem.yaml:8:33: environment.obstacles[1].mesh.file has a vertex that is not finite or, once scaled, "
-          "farther than 1e6 m from its origin");
+    CHECK_THAT(errors_with(folder, "mesh: {file: pole.stl, scale: 1e6}"),
+               Catch::StartsWith("problem.yaml:8:33: environment.obstacles[1].mesh.file '") &&
+                   Catch::Contains("pole.stl' has the corner [3.5, ") &&
+                   Catch::EndsWith("], which is not finite or, once scaled, farther than 1e6 m from its origin"));
+    // What no triangle has does not matter.
+    folder.write("more.obj", "v 3 3 0\nv 4 3 0\nv 3 4 0\nv 1e9 0 0\nf 1 2 3\n");
+    CHECK(errors_with(folder, "mesh: {file: more.obj}") == "sound");
     CHECK(errors_with(folder, "mesh: {file: pole.stl, scale: 0}") ==
           "problem.yaml:8:50: environment.obstacles[1].mesh.scale is 0: expected a number from 1e-06 to 1000000");
     // Bodies of a robot are no meshes.
@@ -240,7 +244,7 @@ TEST_CASE("nobody starts inside a caisson, however its file is rounded, turned o
         }
         return triangles;
     };
-    const std::string collision = "start is in collision with an obstacle";
+    const std::string collision = "start is in collision with the obstacle '";
     for (const std::vector<Triangle>& solid :
          {caisson, turned(caisson, 1), turned(caisson, 7), turned(caisson, 12), with_more(caisson),
           with_more(turned(caisson, 12)), with_more(box_triangles({-1, -1, -1}, {1, 1, 1}))}) {
@@ -295,16 +299,17 @@ TEST_CASE("a unit, an axis or a place that takes a mesh away is a warning with t
     CHECK(warning(pole_mm, ", scale: 0.001, center_m: [0, -2, 0]") == "none");
     const std::string in_mm = warning(pole_mm, ", center_m: [0, -2, 0]");
     CHECK_THAT(in_mm, Contains("mesh.file is 5000 m long, more than a hundred times the bounds") &&
-                          Contains("it would be near with `scale: 0.001`"));
+                          Contains("it would be near with `scale: 0.001` (5 m long)"));
     CHECK_THAT(in_mm, !Contains("rpy_deg"));
-    CHECK_THAT(warning(pole_m, ", scale: 0.001, center_m: [0, -2, 0]"),
-               Contains("less than a hundredth of the bounds") && Contains("it would be near with `scale: 1`"));
+    CHECK_THAT(
+        warning(pole_m, ", scale: 0.001, center_m: [0, -2, 0]"),
+        Contains("less than a hundredth of the bounds") && Contains("it would be near with `scale: 1` (5 m long)"));
     CHECK_THAT(warning(yup, ", center_m: [0, 0, -40]"),
                Contains("lies wholly outside of what the robot reaches") &&
                    Contains("it would be near with `rpy_deg: [90, 0, 0]`, for a file whose y axis points up"));
     CHECK(warning(yup, ", center_m: [0, 0, -40], rpy_deg: [90, 0, 0]") == "none");
     CHECK_THAT(warning(scaled(yup, 1000, {}), ", center_m: [0, 0, -40]"),
-               Contains("it would be near with `scale: 0.001` and `rpy_deg: [90, 0, 0]`"));
+               Contains("it would be near with `scale: 0.001` (5 m long)") && Contains(" and `rpy_deg: [90, 0, 0]`"));
     CHECK_THAT(warning(scaled(pole_m, 1, {0, 400, 0}), ""),
                Contains("lateral from 402.5 to 403.5 m") && !Contains("near with"));
     const auto on_map = scaled(pole_m, 1, {90000, 5334000, 0});

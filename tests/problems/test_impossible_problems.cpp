@@ -13,9 +13,10 @@ const Edit edits[] = {
     {"x_m: -4", "x_m: -7", "12:14: start.x_m is -7, outside the bounds: expected -6 to 6"},
     {"z_m: 2, arm_deg", "z_m: 5.5, arm_deg", "12:23: start.z_m is 5.5, outside the bounds: expected 0.5 to 5"},
     {"z_m: 2, arm_deg", "z_m: 1, arm_deg",
-     "12:1: start is in collision with an obstacle: move the start or the obstacle"},
+     "12:1: start is in collision with the obstacle 'ground': move the start or the obstacle"},
     {"z_m: 2, arm_deg", "z_m: 1.25, arm_deg",
-     "12:1: start is 0.02 m from an obstacle, nearer than planner.safety_margin_m, 0.05: move the start or the "
+     "12:1: start is 0.02 m from the obstacle 'ground', nearer than planner.safety_margin_m, 0.05: move the start or "
+     "the "
      "obstacle"},
     {"k1: 6.9}", "k1: 6.9}\n  min_distance_radii: 12",
      "13:1: start is outside the flyable area: the disc of rotor 1 is 2 m from an obstacle; expected at least 2.28 m "
@@ -53,7 +54,8 @@ const Edit edits[] = {
      "14:3: goal.configuration is in collision with an obstacle or nearer to it than planner.safety_margin_m, anywhere "
      "within its tolerances: move the goal or the obstacle"},
     {"seed: 1", "seed: 1, safety_margin_m: 1",
-     "12:1: start is 0.77 m from an obstacle, nearer than planner.safety_margin_m, 1: move the start or the obstacle"},
+     "12:1: start is 0.77 m from the obstacle 'ground', nearer than planner.safety_margin_m, 1: move the start or the "
+     "obstacle"},
 };
 
 }  // namespace
@@ -83,9 +85,9 @@ TEST_CASE("a start that only rounding tells from its margin is not called nearer
     };
     const std::string remedy = ": move the start or the obstacle";
     const double touching_m = 1.23;  // by the first case above: 0.02 m higher the clearance is 0.02 m
-    CHECK(error_at(touching_m + 1e-12, 0) == "is in collision with an obstacle" + remedy);
+    CHECK(error_at(touching_m + 1e-12, 0) == "is in collision with the obstacle 'ground'" + remedy);
     CHECK(error_at(touching_m + 0.05 - 1e-9, 0.05) ==
-          "is 0.05 m from an obstacle, up to rounding not beyond planner.safety_margin_m, 0.05" + remedy);
+          "is 0.05 m from the obstacle 'ground', up to rounding not beyond planner.safety_margin_m, 0.05" + remedy);
     CHECK(error_at(touching_m + 0.051, 0.05) == "none");
 }
 

@@ -113,8 +113,17 @@ TEST_CASE(
     CHECK(mesh.triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 3}, {0, 1, 4}});
 }
 
+TEST_CASE("A comment may end a line of OBJ") {
+    const TriangleMesh mesh = parse_mesh("v 0 0 0 # corner \\\nv 1 0 0 #1\nv 0 1 0\nf 1 2 3 # all\n", "a.obj");
+    CHECK(mesh.triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}});
+}
+
 TEST_CASE("Wrong ASCII STL is an error with its line") {
     const auto [bytes, said] = GENERATE(table<std::string, std::string>({
+        {"facet normal 0 0 1\nouter loop\n", "line 1: found 'facet', expected 'solid'"},
+        {"solid a facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet endsolid a\n",
+         "line 1: holds a solid with its vertices: expected each of 'solid', 'facet', 'outer loop', 'vertex', "
+         "'endloop', 'endfacet' and 'endsolid' at the beginning of a line"},
         {ascii_with("0 0 1\n    outer loop", "0 0 1 outer loop"), "line 3: found 'vertex', expected 'outer loop'"},
         {ascii_with("facet", "face"), "line 2: found 'face', expected 'facet' or 'endsolid'"},
         {ascii_with("outer loop", "outer"), "line 3: found 'outer', expected 'outer loop'"},
@@ -123,7 +132,7 @@ TEST_CASE("Wrong ASCII STL is an error with its line") {
         {ascii_with("vertex 1 0 0", "vertex 1 0 1e11"),
          "line 5: found '1e11', expected a finite number of at most 1e10 in size"},
         {ascii_with("vertex 1 0 0", "vertex 1,0 0 0"),
-         "line 5: found '1,0', expected a finite number of at most 1e10 in size"},
+         "line 5: found '1,0', expected a finite number of at most 1e10 in size; write a decimal point, no comma"},
         {ascii_with("vertex 1 0 0\n", "\n"), "line 7: found 'endloop', expected 'vertex'"},
         {ascii_with("endloop", "vertex 1 1 1"), "line 7: found 'vertex', expected 'endloop'"},
         {ascii_with("endsolid one", "facet"), "line 9: the file ends here: expected 'outer loop'"},
@@ -174,6 +183,11 @@ TEST_CASE("Wrong OBJ is an error with its line") {
         {"v 1 2\n", "line 1: a vertex of 2 numbers: expected 3"},
         {"\n\nv 1 2 nan\n", "line 3: found 'nan', expected a finite number of at most 1e10 in size"},
         {"v 1 2 3 4 5\n", "line 1: a vertex of 5 numbers: expected 3"},
+        {"v 4,0 0 1\n",
+         "line 1: found '4,0', expected a finite number of at most 1e10 in size; write a decimal point, no comma"},
+        {three + "f 1 2 3 1 2 3\n",
+         "line 4: a face whose outline goes around more than once: expected each corner once"},
+        {three + "f 1\n", "line 4: a face of 1 corner: expected at least 3"},
         {three + "f 1 2\n", "line 4: a face of 2 corners: expected at least 3"},
         {three + "f 1 2 4\n", "line 4: refers to vertex 4: expected one of the 3 before this line"},
         {three + "f 1 2 -4\n", "line 4: refers to vertex -4: expected one of the 3 before this line"},
@@ -203,12 +217,13 @@ TEST_CASE("Meshes of more than two million triangles are errors") {
 }
 
 TEST_CASE("A line of more words than any face has corners is an error, whatever it says") {
-    std::string words = "#";
+    std::string words = "g";
     for (int i = 1; i < 2'001'000; ++i) {
         words += " x";
     }
     const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     CHECK(said_of(three + words + "\n", "a.obj") == "none");
+    CHECK(said_of(three + "#" + words + " x\n", "a.obj") == "none");  // a comment
     CHECK(said_of(three + words + " x\n", "a.obj") ==
           "'a.obj' line 5: has more than 2001000 words: expected one statement in a line");
 }

@@ -7,6 +7,7 @@
 
 #include "../support/error_of.hpp"
 #include "../support/meshes.hpp"
+#include "downwash/scene/mesh_remarks.hpp"
 #include "downwash/scene/mesh_sides.hpp"
 #include "reference.hpp"
 
@@ -99,7 +100,8 @@ TEST_CASE("Meshes that cannot stand in a scene are errors with their place") {
     CHECK_THAT(error_in(mesh_of({a, b, c}, {})), Contains("obstacles[1].mesh.file: has no triangle with an area"));
     CHECK_THAT(error_in(mesh_of({a, b, c}, {{0, 1, 3}})), Contains("a corner that is not among its vertices"));
     CHECK_THAT(error_in(mesh_of({a, b, {2, 0, 0}}, {{0, 1, 2}, {0, 1, 1}})), Contains("no triangle with an area"));
-    CHECK_THAT(error_in(mesh_of({a, b, {0, std::nan(""), 0}}, {{0, 1, 2}})), Contains("vertex that is not finite"));
+    CHECK_THAT(error_in(mesh_of({a, b, {0, std::nan(""), 0}}, {{0, 1, 2}})),
+               Contains("has the corner [0, nan, 0], which is not finite"));
     CHECK_THAT(error_in(mesh_of({a, b, {0, 2e6, 0}}, {{0, 1, 2}})), Contains("farther than 1e6 m"));
     Mesh scaled = mesh_of({a, b, c}, {{0, 1, 2}});
     for (const double scale : {0.0, -1.0, std::nan(""), 1.0 / 0.0}) {
@@ -111,6 +113,36 @@ TEST_CASE("Meshes that cannot stand in a scene are errors with their place") {
                Contains("has 2200000 triangles: at most 2000000"));
     const Mesh half = mesh_of({a, b, c}, {many.begin(), many.begin() + 1'000'001});
     CHECK_THROWS_WITH(Scene({{"", half, {}, {}}, {"", half, {}, {}}}), Contains("above 2000000"));
+}
+
+TEST_CASE("A sheet that is there twice encloses nothing, a thin plate does") {
+    const std::vector<Vector3> corners{{0, 0, 5}, {4, 0, 5}, {4, 4, 5}, {0, 4, 5}};
+    // One diagonal above, the other below.
+    const Mesh doubled = mesh_of(corners, {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}});
+    CHECK(kind_of(doubled) == SurfaceKind::sheet);
+    const SurfaceFacts facts = sides_of(*doubled.surface).facts;
+    CHECK(facts.pieces == 1);
+    CHECK(facts.solid_pieces == 0);
+    CHECK(facts.open_edges == 0);
+    CHECK(kind_of(box_mesh({100, 100, 1e-4})) == SurfaceKind::solid);
+    CHECK(kind_of(box_mesh({100, 0.01, 0.01})) == SurfaceKind::solid);
+    CHECK(kind_of(joined(doubled, box_mesh({1, 1, 1}))) == SurfaceKind::mixed);
+    // Two tetrahedra that meet at a corner, one of them inside out: together they have no volume.
+    const Mesh two = mesh_of({{0, 0, 0}, {1, 0, 1}, {0, 1, 1}, {0, 0, 1}, {-1, 0, -1}, {0, -1, -1}, {0, 0, -1}},
+                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 5, 4}, {0, 4, 6}, {0, 6, 5}, {4, 5, 6}});
+    CHECK(kind_of(two) == SurfaceKind::solid);
+}
+
+TEST_CASE("Edges of walls that two rooms share, and steps of single precision, are told") {
+    const Mesh box = box_mesh({1, 1, 1});
+    CHECK(shared_edges(*box.surface) == 0);
+    CHECK(shared_edges(*first_triangles(box, 11).surface) == 0);
+    // Three leaves of a book.
+    const Mesh book =
+        mesh_of({{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}}, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}});
+    CHECK(shared_edges(*book.surface) == 1);
+    CHECK(single_precision_step(*moved(box, {5'334'567, 0, 0}).surface) == 0.5);
+    CHECK(single_precision_step(*moved(box, {5'334'567.1, 0, 0}).surface) == 0);
 }
 
 TEST_CASE("A surface is closed when every edge is gone through both ways") {
