@@ -92,11 +92,8 @@ std::string_view name_of(DataKind kind) {
 }
 
 std::vector<DataFacts> data_facts(const Problem& problem) {
-    return data_facts(problem.aero);
-}
-
-std::vector<DataFacts> data_facts(const AeroSettings& aero) {
     std::vector<DataFacts> all;
+    const AeroSettings& aero = problem.aero;
     if (aero.map) {
         all.push_back({"aero.map", aero.map_file.value_or(""), DataKind::grid, aero.map->csv()});
     }
