@@ -333,7 +333,7 @@ Certificate ProblemWorlds::screen(const Course& before, const Plan& part, const 
         return flights;
     };
     const double share = problem_.planner.max_failure_probability / static_cast<double>(goals());
-    const Certificate certificate =
+    Certificate certificate =
         tested({whole, visited + 1, first_screening, fly}, is_over, counter,
                CertificateRecord(share, before.attempts > 0 ? confidence : first_confidence, 1, visited));
     if (certificate.is_given) {

@@ -93,7 +93,13 @@ bool is_convex(std::vector<Point> outline, double rounding) {
             return false;
         }
     }
-    return changes_of_direction(outline, [](const Point& p) { return p.x; }) <= 2 &&
+    // Spikes turn by nothing, so that what a fan covers tells of them.
+    double backwards = 0;
+    for (std::size_t i = 1; i + 1 < count; ++i) {
+        backwards -= std::min(0., turn(outline[0], outline[i], outline[i + 1]));
+    }
+    return backwards <= static_cast<double>(count) * rounding &&
+           changes_of_direction(outline, [](const Point& p) { return p.x; }) <= 2 &&
            changes_of_direction(outline, [](const Point& p) { return p.y; }) <= 2;
 }
 

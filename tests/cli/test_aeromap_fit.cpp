@@ -162,7 +162,7 @@ TEST_CASE("A comparison lists every model for every source and surface") {
 TEST_CASE("A comparison says for each surface what too high a K does, and a page shows it whole") {
     const Workspace work;
     const std::string markdown = work.run("aeromap compare", measured, tilted, "--rotor-spacing 2.5 --markdown").out;
-    CHECK_THAT(markdown, Contains("Under a ceiling") && Contains("Over the ground"));
+    CHECK_THAT(markdown, Contains("a ceiling, overstating is careful") && Contains("Over the ground"));
     const std::string page = read_file(DOWNWASH_AEROMAP_PAGE);
     const std::string begin = "<!-- comparison -->\n";
     const auto first = page.find(begin);
@@ -191,7 +191,7 @@ TEST_CASE("A comparison without a column of surfaces takes all measurements at t
     write_file(work / "m.csv", "z_over_r,thrust_ratio,surface\n0.5,1.3,grond\n");
     write_file(work / "n.csv", "z_over_r,thrust_ratio,surface\n0.5,1.3,ground\n");
     check_rejected(work.run("aeromap compare", work / "n.csv", work / "m.csv"),
-                   "m.csv:2: has the surface 'grond'; expected ground or ceiling; did you mean 'ground'?");
+                   "m.csv:2:9: has the surface 'grond'; expected ground or ceiling; did you mean 'ground'?");
 }
 
 TEST_CASE(

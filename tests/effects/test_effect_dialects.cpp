@@ -161,7 +161,7 @@ TEST_CASE("What spreadsheets and scripts make of one table is that table, or an 
     CHECK(error("z_over_r,thrust_ratio\n\xE2\x88\x92"
                 "1,1.5\n") ==
           "m.csv:2:1: z_over_r is '\xE2\x88\x92"
-          "1': expected a number from 1e-06 to 1000");
+          "1': expected a number from 1e-06 to 1000; write its minus sign as '-', not as U+2212");
     CHECK(error("z_over_r,thrust_ratio,sigma\n0.5,1.21,0\n") ==
           "m.csv:2:10: sigma is '0': expected a number from 1e-09 to 100");
     CHECK(error("z_over_r,thrust_ratio\n0.5,121\n") ==

@@ -110,8 +110,7 @@ TEST_CASE("A surface that no model was made for is an error with the line that h
     CHECK(compared(measured_at("ceiling")).size() == 2);
     CHECK(compared(measured_at("")).size() == 2);
     CHECK_THROWS_WITH(compared(measured_at("cieling")),
-                      "line 3 of the measurements has the surface 'cieling'; expected ground or ceiling; did you mean "
-                      "'ceiling'?");
+                      "m.csv:3:7: has the surface 'cieling'; expected ground or ceiling; did you mean 'ceiling'?");
 }
 
 TEST_CASE("Tilted rotors are a data set for every tilt, and K fades as in flight") {
