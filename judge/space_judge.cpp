@@ -1,0 +1,154 @@
+#include "downwash/judge/space_judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+
+#include "downwash/base/key_error.hpp"
+#include "downwash/effects/effect_models.hpp"
+#include "downwash/judge/placement.hpp"
+#include "downwash/judge/reference.hpp"
+#include "downwash/judge/space_loop.hpp"
+#include "downwash/judge/space_umpire.hpp"
+
+namespace downwash::judge {
+namespace {
+
+/// A hover of this length brings a vehicle to rest at its start.
+constexpr double settling_s = 20;
+
+/// @return nullptr where surfaces do nothing
+std::shared_ptr<const DirectEffect> effect_of(const SpaceRobot& robot, const std::vector<Obstacle>& obstacles,
+                                              const AeroSettings& aero) {
+    if (!aero.enabled) {
+        return nullptr;
+    }
+    const std::pair<EffectModel, const char*> sides[] = {{aero.ground.model, "aero.ground"},
+                                                         {aero.ceiling.model, "aero.ceiling"}};
+    for (const auto& [model, key] : sides) {
+        if (!aero.map && is_multirotor(model)) {
+            throw_input_error("is a model of several rotors: the judge knows those of a single rotor in space", key);
+        }
+    }
+    if (aero.wall.is_any()) {
+        throw_input_error("the judge does not know what walls do in space", "aero.wall");
+    }
+    return std::make_shared<const DirectEffect>(std::make_shared<const Scene>(obstacles), aero, robot.rotor_radius_m);
+}
+
+SpaceCoordinates coordinates_of(const SpaceJudgedMotion& motion, int joints) {
+    SpaceCoordinates at;
+    at.position_m = vector_of(motion.position_m);
+    at.attitude =
+        Eigen::Quaterniond(motion.attitude[0], motion.attitude[1], motion.attitude[2], motion.attitude[3]).normalized();
+    at.velocity_m_s = vector_of(motion.velocity_m_s);
+    at.body_rate_rad_s = vector_of(motion.body_rates_rad_s);
+    at.joints_rad = Eigen::Map<const Eigen::VectorXd>(motion.joints_rad.data(), joints);
+    at.joint_rates_rad_s = Eigen::Map<const Eigen::VectorXd>(motion.joint_rates_rad_s.data(), joints);
+    return at;
+}
+
+bool is_at_rest(const SpaceCoordinates& at) {
+    return at.velocity_m_s.isZero(0) && at.body_rate_rad_s.isZero(0) && at.joint_rates_rad_s.isZero(0);
+}
+
+/// The reference that rests where a vehicle is.
+SpacePoint rest_at(const SpaceCoordinates& at) {
+    SpacePoint here;
+    std::copy_n(at.position_m.data(), 3, here.position);
+    const Eigen::Vector3d ahead = at.attitude * Eigen::Vector3d::UnitX();
+    here.position[space::yaw] = std::atan2(ahead.y(), ahead.x());
+    std::copy_n(at.joints_rad.data(), at.joints_rad.size(), here.position + space::first_joint);
+    return here;
+}
+
+/// The reference at a tick, by the quintic Hermite basis; behind the last knot the last.
+SpacePoint reference_at(const SpacePlan& plan, std::int64_t tick) {
+    const auto after = std::upper_bound(plan.reference.begin(), plan.reference.end(), tick,
+                                        [](std::int64_t t, const SpaceKnot& knot) { return t < knot.tick; });
+    if (after == plan.reference.end() || after == plan.reference.begin()) {
+        return after == plan.reference.begin() ? plan.reference.front().point : plan.reference.back().point;
+    }
+    const SpaceKnot& from = *(after - 1);
+    const double ticks = static_cast<double>(after->tick - from.tick);
+    SpacePoint point;
+    for (int axis = 0; axis < space_axes<max_joints>; ++axis) {
+        const auto course = [&](const SpacePoint& p) {
+            return Course{p.position[axis], p.velocity[axis], p.acceleration[axis]};
+        };
+        const Course at = between(course(from.point), course(after->point), ticks * plan.tick_s,
+                                  static_cast<double>(tick - from.tick) / ticks);
+        point.position[axis] = at.position;
+        point.velocity[axis] = at.velocity;
+        point.acceleration[axis] = at.acceleration;
+    }
+    return point;
+}
+
+/// Whether a vehicle could hover where it is.
+bool settles(SpaceLoop& loop, const SpaceCoordinates& start, double tick_s) {
+    const SpacePoint here = rest_at(start);
+    SpaceStability stability;
+    for (std::int64_t tick = 0; tick < std::llround(settling_s / tick_s); ++tick) {
+        loop.next(tick, here);
+        if (!stability.is_stable(loop.coordinates(), here)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+struct SpaceJudge::Shared {
+    SpaceRobot robot;
+    std::shared_ptr<const DirectEffect> effect;
+    SpaceObstacles obstacles;
+    SpaceControl control;
+};
+
+SpaceJudge::SpaceJudge(const SpaceRobot& robot, const std::vector<Obstacle>& obstacles, const AeroSettings& aero)
+    : shared_(new Shared{robot, effect_of(robot, obstacles, aero), {obstacles, robot}, SpaceControl(robot)}) {}
+
+SpaceJudge::~SpaceJudge() = default;
+
+SpaceJudgedFlight SpaceJudge::fly(const SpacePlan& plan, const SpaceFlightConditions& conditions) const {
+    const Shared& shared = *shared_;
+    const SpaceWorld nominal_world{};
+    const SpaceWorld world = conditions.world.value_or(nominal_world);
+    const auto effect = conditions.aero ? shared.effect : nullptr;
+    const SpaceSurroundings surfaces(effect, world);
+    const SpaceSurroundings nominal_surfaces(effect, nominal_world);
+    const SpaceVehicle vehicle = vehicle_in(world, shared.robot);
+    const SpacePlant plant(vehicle, surfaces);
+    const SpaceCoordinates start = coordinates_of(conditions.start, shared.robot.joints());
+    const double tick_s = shared.control.tick_s();
+    const bool hovers_first = conditions.world && is_at_rest(start);
+    SpaceLoop loop(shared.control, nominal_surfaces, plant, hovers_first ? without_noise(world) : world, shared.robot,
+                   start);
+    SpaceJudgedFlight flight;
+    if (hovers_first) {
+        if (!settles(loop, start, tick_s)) {
+            flight.outcome = Outcome::unstable;
+            return flight;
+        }
+        loop.forget(world);
+    }
+    SpaceUmpire umpire(shared.obstacles, surfaces, shared.robot, world, tick_s, flight);
+    const std::int64_t end = plan.reference.back().tick + conditions.hold_ticks;
+    SpacePoint now = reference_at(plan, 0);
+    bool goes_on = umpire.sees(loop, now);
+    for (std::int64_t tick = 0; tick < end && goes_on; ++tick) {
+        loop.next(tick, now);
+        now = reference_at(plan, tick + 1);
+        goes_on = umpire.sees(loop, now);
+    }
+    if (flight.outcome == Outcome::ok && conditions.energy_budget_j && flight.energy_j > *conditions.energy_budget_j) {
+        flight.outcome = Outcome::over_budget;
+    }
+    return flight;
+}
+
+}  // namespace downwash::judge

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "downwash/aeromap/aero_settings.hpp"
+#include "downwash/base/export.hpp"
+#include "downwash/controllers/space_reference.hpp"
+#include "downwash/judge/space_judged_flight.hpp"
+#include "downwash/scene/shapes.hpp"
+#include "downwash/simulation/space_robot.hpp"
+#include "downwash/simulation/space_world_description.hpp"
+
+namespace downwash::judge {
+
+/// How to fly.
+struct SpaceFlightConditions {
+    SpaceJudgedMotion start;
+    std::int64_t hold_ticks = 0;  ///< hover after the last knot, >= 0
+    bool aero = true;             ///< false: surfaces have no effect on the rotors
+    /// Empty: everything is nominal. In a world a vehicle that starts at rest has hovered there for 20 s before, in
+    /// calm air and with quiet sensors.
+    std::optional<SpaceWorld> world;
+    std::optional<double> energy_budget_j;
+};
+
+/// Flies plans of a robot in space and says how they end. It shares parameters, shapes and the formulas of surface
+/// effects with the planner, and nothing that computes a flight (judge/README.md). It knows no goals: a flight that
+/// runs to its end is `ok`. Safe to share between threads.
+class DOWNWASH_EXPORT SpaceJudge {
+ public:
+    /// @throws InputError if a setting of the air is out of range or one that the judge does not know: models of
+    /// several rotors, walls
+    /// @pre space_robot_errors(robot) is empty, Scene would take the obstacles
+    SpaceJudge(const SpaceRobot& robot, const std::vector<Obstacle>& obstacles, const AeroSettings& aero);
+    ~SpaceJudge();
+    SpaceJudge(const SpaceJudge&) = delete;
+    SpaceJudge& operator=(const SpaceJudge&) = delete;
+
+    /// @pre the plan has a knot, the first at tick 0, the robot's joints and its tick
+    [[nodiscard]] SpaceJudgedFlight fly(const SpacePlan& plan, const SpaceFlightConditions& conditions = {}) const;
+
+ private:
+    struct Shared;
+    std::unique_ptr<const Shared> shared_;
+};
+
+}  // namespace downwash::judge

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "downwash/base/vector3.hpp"
+#include "downwash/controllers/space_reference.hpp"
+#include "downwash/judge/judged_flight.hpp"
+
+namespace downwash::judge {
+
+/// Where a vehicle in space is and how it moves. Joints that it lacks stay at zero.
+struct SpaceJudgedMotion {
+    Vector3 position_m{};                        ///< of the point that the robot file calls the centre of mass, world
+    std::array<double, 4> attitude{1, 0, 0, 0};  ///< quaternion (w, x, y, z) from body to world, of any length but zero
+    std::array<double, max_joints> joints_rad{};
+    Vector3 velocity_m_s{};      ///< of that point, world axes
+    Vector3 body_rates_rad_s{};  ///< body axes
+    std::array<double, max_joints> joint_rates_rad_s{};
+};
+
+/// A vehicle in space at a control tick.
+struct SpaceJudgedRow {
+    double t_s = 0;
+    SpaceJudgedMotion motion;
+    SpacePoint reference;
+    double clearance_m = std::numeric_limits<double>::infinity();  ///< to obstacles
+    double energy_j = 0;
+};
+
+/// The figures of one flight of a plan in space, hover included.
+struct SpaceJudgedFlight {
+    Outcome outcome = Outcome::ok;
+    bool is_self_collision = false;                                    ///< of a collision: the robot touched itself
+    double min_clearance_m = std::numeric_limits<double>::infinity();  ///< 0 on contact; infinity without obstacles
+    double energy_j = 0;
+    double duration_s = 0;
+    double max_tracking_error_m = 0;
+    std::vector<SpaceJudgedRow> rows;  ///< one per control tick
+};
+
+}  // namespace downwash::judge
