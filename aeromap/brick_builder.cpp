@@ -25,6 +25,8 @@ constexpr double allowed_error = 0.003;
 constexpr std::uint32_t max_halvings = 7;
 constexpr std::uint32_t shortest_edge = 8;  // has eighths on the lattice
 constexpr std::uint32_t cell_edge = shortest_edge << max_halvings;
+/// Beside the ends of walls the vector towards them jumps, which no halving mends.
+constexpr std::uint32_t shortest_edge_of_walls = cell_edge / 4;
 constexpr std::uint32_t bits_per_axis = 21;
 /// Beyond that many boxes the rest of a brick is left to direct evaluation. A few hundred are usual, ten thousand
 /// among the parts of a mesh.
@@ -101,7 +103,7 @@ class BrickBuilder {
                 return VolumeNode::of(kind_of(fit.sides), index_of(fit), kept_m);
             }
         }
-        if (box.edges[axis] <= shortest_edge || boxes_ >= max_brick_boxes) {
+        if (box.edges[axis] <= (is_of_walls_ ? shortest_edge_of_walls : shortest_edge) || boxes_ >= max_brick_boxes) {
             return VolumeNode::of(Kind::direct, 0, kept_m);
         }
         ++boxes_;

@@ -27,7 +27,7 @@ inline constexpr std::size_t max_volume_bricks = 4194304;
 /// within 0.01 of the direct evaluation everywhere in the flyable area (docs/model.md 4.10). Boxes that are forbidden
 /// throughout, or where K cannot differ by more than 0.006 from 1, count as 1. Coefficients are kept as float.
 ///
-/// An edge is halved at most 7 times, to R / 284. Boxes in which K still jumps are evaluated directly, and so is what
+/// An edge is halved at most 7 times, to R / 284 (of walls twice). Boxes in which K still jumps are evaluated directly, and so is what
 /// would make a brick of more than max_brick_boxes. Safe to share between threads.
 class DOWNWASH_EXPORT VolumeMap {
  public:
