@@ -256,3 +256,21 @@ TEST_CASE("A volume without extent or of too many cells is an error") {
         CHECK_THROWS_AS(map_of(effect, block), InputError);
     }
 }
+
+TEST_CASE("A volume of walls is within 0.01 of the vector towards the nearest wall") {
+    const auto effect = std::make_shared<const DirectEffect>(
+        DirectEffect::walls_around(test::scene_of({{"wall", Box{{0.4, 4, 3}}, {0, 0, 1.5}, {}}}), {}, 0.2, 0.3));
+    const VolumeMap map(effect, {}, {-2, 2, 0.5, 2}, -1, 1);
+    test::Random random(74);
+    double longest = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vector3 center_m{random.uniform(0.3, 0.9), random.uniform(-0.4, 0.4), random.uniform(1, 1.5)};
+        const Vector3 direct = effect->towards_wall(center_m);
+        const SidedFactor<double> looked_up = map.sided_factor(center_m);
+        REQUIRE(std::abs(looked_up.all - direct[0]) <= 0.01);
+        REQUIRE(std::abs(looked_up.above - direct[1]) <= 0.01);
+        CHECK(direct[0] <= 0);  // the wall is behind
+        longest = std::max(longest, -direct[0]);
+    }
+    CHECK(longest > 0.99);
+}
