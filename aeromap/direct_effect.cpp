@@ -139,6 +139,33 @@ DirectEffect DirectEffect::walls(std::shared_ptr<const Scene> scene, const AeroS
     return effect;
 }
 
+DirectEffect DirectEffect::walls_around(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                        double rotor_radius_m, double reach_m) {
+    DirectEffect effect = walls(std::move(scene), settings, rotor_radius_m, reach_m, 0);
+    effect.wall_view_->is_around = true;
+    return effect;
+}
+
+Vector3 DirectEffect::towards_wall(const Vector3& center_m) const {
+    const auto distance_m = [&](double x_m, double y_m) {
+        return horizontal_clearance_m(*scene_, {center_m[0] + x_m, center_m[1] + y_m, center_m[2]});
+    };
+    if (!settings_.enabled || !is_finite(center_m)) {
+        return {0, 0, 0};
+    }
+    const double here_m = distance_m(0, 0);
+    if (!std::isfinite(here_m)) {
+        return {0, 0, 0};
+    }
+    constexpr double step_m = 0.02;  // as in wall_nearness()
+    const double x = (distance_m(-step_m, 0) - distance_m(step_m, 0)) / (2 * step_m);
+    const double y = (distance_m(0, -step_m) - distance_m(0, step_m)) / (2 * step_m);
+    const double gap_m = std::max(0.0, here_m - wall_view_->reach_m - rotor_radius_m_);
+    const double size =
+        std::exp(-gap_m / (settings_.wall.decay_radii * rotor_radius_m_)) / std::max(1.0, std::sqrt(x * x + y * y));
+    return {size * x, size * y, 0};
+}
+
 double DirectEffect::wall_nearness(const Vector3& center_m) const {
     const auto distance_m = [&](double ahead_m) {
         const Vector3& ahead = wall_view_->ahead;

@@ -40,6 +40,17 @@ class DOWNWASH_EXPORT DirectEffect {
     [[nodiscard]] static DirectEffect walls(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
                                             double rotor_radius_m, double reach_m, double heading_rad);
 
+    /// The same for a vehicle in space, which has no plane of motion: see towards_wall(). factors() are not defined.
+    /// @param reach_m from the centre between the rotors to the farthest hub, >= 0
+    [[nodiscard]] static DirectEffect walls_around(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                                   double rotor_radius_m, double reach_m);
+
+    /// The vector towards the nearest wall at the height of the centre between the rotors: level, of length
+    /// exp(-gap / decay), and 0 where no wall is. gap is that between the wall and the edge of a rotor on this side,
+    /// whatever the heading. Between two walls it turns over 2 cm; there it is shorter. 0 when not finite.
+    /// @pre made by walls_around()
+    [[nodiscard]] Vector3 towards_wall(const Vector3& center_m) const;
+
     /// The two one-sided factors and their superposition at a rotor hub.
     struct Factors {
         double ground = 1;   ///< surfaces below; 1 + disc average of k - 1
@@ -80,6 +91,8 @@ class DOWNWASH_EXPORT DirectEffect {
     [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
     /// Whether this is how near walls are, see walls(), and no thrust ratio.
     [[nodiscard]] bool is_of_walls() const noexcept { return wall_view_.has_value(); }
+    /// Whether it is that of walls_around().
+    [[nodiscard]] bool is_of_walls_around() const noexcept { return wall_view_.has_value() && wall_view_->is_around; }
     /// How far walls() looks: from the centre between the rotors to the hub of the foremost one. @pre is_of_walls()
     [[nodiscard]] double wall_reach_m() const noexcept { return wall_view_->reach_m; }
     /// Upper bounds of |K - 1| where no surface below, or above, is nearer than a distance in radii.
@@ -90,7 +103,8 @@ class DOWNWASH_EXPORT DirectEffect {
     /// Where to look for walls.
     struct WallView {
         double reach_m;
-        Vector3 ahead;  ///< unit vector along the plane of motion, level
+        Vector3 ahead;           ///< unit vector along the plane of motion, level
+        bool is_around = false;  ///< in all directions, not ahead alone
     };
 
     [[nodiscard]] double one_sided(Side side, const Vector3& hub_m) const;

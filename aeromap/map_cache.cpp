@@ -68,8 +68,24 @@ fs::path write_blocks(const fs::path& folder, const std::string& key, const std:
     return path;
 }
 
+std::string key_of(const AeroMap& map) {
+    return map_key(map.layers(), map.plane(), map.extent());
+}
+std::string key_of(const VolumeMap& map) {
+    return map_key(map);
+}
+
+/// A map of the same making of which nothing is filled.
+AeroMap unfilled(const AeroMap& map) {
+    return AeroMap(map.layers(), map.plane(), map.extent());
+}
+VolumeMap unfilled(const VolumeMap& map) {
+    return map.unfilled();
+}
+
 /// Adds the blocks of a file to a map; false if it is not a sound file of this map.
-bool read_blocks(const fs::path& path, const std::string& key, AeroMap& map) {
+template <class Map>
+bool read_blocks(const fs::path& path, const std::string& key, Map& map) {
     try {
         const std::string file = read_file(path, max_bytes);
         return map.add_bytes(checked_content(file, head_of(key)));
@@ -80,8 +96,9 @@ bool read_blocks(const fs::path& path, const std::string& key, AeroMap& map) {
 
 /// Replaces the files of a map by one. What another program adds meanwhile stays beside it, and what it merges at the
 /// same time is in its file.
-void merge(const fs::path& folder, const std::string& key, const AeroMap& map) {
-    AeroMap all(map.layers(), map.plane(), map.extent());
+template <class Map>
+void merge(const fs::path& folder, const std::string& key, const Map& map) {
+    Map all = unfilled(map);
     std::vector<fs::path> merged = files_of(folder, key);
     std::erase_if(merged, [&](const fs::path& path) { return !read_blocks(path, key, all); });
     const fs::path whole = write_blocks(folder, key, all.to_bytes());
@@ -140,22 +157,47 @@ void trim(const fs::path& folder) {
     }
 }
 
+/// Adds all that a folder has of a map; false if there is nothing.
+template <class Map>
+bool read_all(const fs::path& folder, Map& map) {
+    const std::string key = key_of(map);
+    bool is_found = false;
+    for (const fs::path& path : files_of(folder, key)) {
+        if (read_blocks(path, key, map)) {
+            is_found = true;
+            std::error_code ignored;
+            fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
+        }
+    }
+    return is_found;
+}
+
+template <class Map>
+bool keep_new(const fs::path& folder, const Map& map) {
+    const std::string blocks = map.take_new_bytes();
+    if (blocks.empty()) {
+        return true;
+    }
+    if (blocks.size() > max_bytes / 2) {
+        return false;
+    }
+    const std::string key = key_of(map);
+    fs::create_directories(folder);
+    write_blocks(folder, key, blocks);
+    if (files_of(folder, key).size() >= many_files) {
+        merge(folder, key, map);
+    }
+    trim(folder);
+    return true;
+}
+
 }  // namespace
 
 std::shared_ptr<const AeroMap> MapCache::find(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
                                               const Bounds& extent) const noexcept {
     try {
-        const std::string key = map_key(layers, plane, extent);
         auto map = std::make_shared<AeroMap>(layers, plane, extent);
-        bool is_found = false;
-        for (const fs::path& path : files_of(folder_, key)) {
-            if (read_blocks(path, key, *map)) {
-                is_found = true;
-                std::error_code ignored;
-                fs::last_write_time(path, fs::file_time_type::clock::now(), ignored);
-            }
-        }
-        return is_found ? map : nullptr;
+        return read_all(folder_, *map) ? map : nullptr;
     } catch (const std::exception&) {
         return nullptr;
     }
@@ -163,21 +205,23 @@ std::shared_ptr<const AeroMap> MapCache::find(const std::vector<MapLayer>& layer
 
 bool MapCache::keep(const AeroMap& map) const noexcept {
     try {
-        const std::string blocks = map.take_new_bytes();
-        if (blocks.empty()) {
-            return true;
-        }
-        if (blocks.size() > max_bytes / 2) {
-            return false;
-        }
-        const std::string key = map_key(map.layers(), map.plane(), map.extent());
-        fs::create_directories(folder_);
-        write_blocks(folder_, key, blocks);
-        if (files_of(folder_, key).size() >= many_files) {
-            merge(folder_, key, map);
-        }
-        trim(folder_);
-        return true;
+        return keep_new(folder_, map);
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
+bool MapCache::read(VolumeMap& map) const noexcept {
+    try {
+        return read_all(folder_, map);
+    } catch (const std::exception&) {
+        return false;
+    }
+}
+
+bool MapCache::keep(const VolumeMap& map) const noexcept {
+    try {
+        return keep_new(folder_, map);
     } catch (const std::exception&) {
         return false;
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "downwash/aeromap/aero_map.hpp"
+#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/base/export.hpp"
 
 namespace downwash {
@@ -18,10 +19,13 @@ inline constexpr int map_format_version = 10;
 [[nodiscard]] DOWNWASH_EXPORT std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane,
                                                   const Bounds& extent);
 
-/// Keeps what is filled of aero maps in a folder from one run to the next: of at most 32 maps, and 1 GB, removing the
-/// least recently used first. Every keep() adds a file with the blocks that are new, and merges the files of a map when
-/// they grow many. Nothing here throws: a file that is damaged, foreign or of another version is not found, and a
-/// folder that cannot be written keeps nothing. Programs may share a folder.
+/// The same of a volume: scene, block, and its effect.
+[[nodiscard]] DOWNWASH_EXPORT std::string map_key(const VolumeMap& map);
+
+/// Keeps what is filled of aero maps and volumes in a folder from one run to the next: of at most 32 maps, and 1 GB,
+/// removing the least recently used first. Every keep() adds a file with the blocks that are new, and merges the files
+/// of a map when they grow many. Nothing here throws: a file that is damaged, foreign or of another version is not
+/// found, and a folder that cannot be written keeps nothing. Programs may share a folder.
 class DOWNWASH_EXPORT MapCache {
  public:
     /// @param folder created with the first map
@@ -35,6 +39,12 @@ class DOWNWASH_EXPORT MapCache {
     /// Keeps the blocks that were filled since the last call, but not those that were read; false if that is not
     /// possible.
     bool keep(const AeroMap& map) const noexcept;
+
+    /// Adds to a volume all bricks that the folder has of it; false if there are none.
+    bool read(VolumeMap& map) const noexcept;
+
+    /// Keeps the bricks that were filled since the last call; otherwise the same.
+    bool keep(const VolumeMap& map) const noexcept;
 
  private:
     std::filesystem::path folder_;

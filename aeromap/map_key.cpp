@@ -115,6 +115,26 @@ void add_grid(Description& description, const FactorGrid& grid) {
     }
 }
 
+/// All of it but the scene.
+void add_direct_effect(Description& description, const DirectEffect& effect) {
+    // The tilt comes in flight, behind the map.
+    const auto& [enabled, ground, ceiling, tilt_loss, wall, map_file, map, max_factor, min_distance_radii, grid_m] =
+        effect.settings();
+    description.add(enabled ? "on" : "off").add(grid_m);
+    description.add(effect.rotor_radius_m()).add(effect.min_clearance_m());
+    add_effect(description, ground);
+    add_effect(description, ceiling);
+    description.add(max_factor).add(min_distance_radii);
+    add_curve(description, effect.ground());
+    add_curve(description, effect.ceiling());
+    if (map) {
+        add_grid(description, *map);
+    }
+    if (effect.is_of_walls()) {
+        description.add("walls").add(wall.decay_radii).add(effect.wall_reach_m());
+    }
+}
+
 }  // namespace
 
 std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& plane, const Bounds& extent) {
@@ -125,22 +145,8 @@ std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& pl
     description.add_all(std::initializer_list<double>{x_low_m, x_high_m, z_low_m, z_high_m});
     const Scene* described = nullptr;
     for (const auto& [effect, lateral_m] : layers) {
-        // The tilt comes in flight, behind the map.
-        const auto& [enabled, ground, ceiling, tilt_loss, wall, map_file, map, max_factor, min_distance_radii, grid_m] =
-            effect->settings();
-        description.add("layer").add(lateral_m).add(enabled ? "on" : "off").add(grid_m);
-        description.add(effect->rotor_radius_m()).add(effect->min_clearance_m());
-        add_effect(description, ground);
-        add_effect(description, ceiling);
-        description.add(max_factor).add(min_distance_radii);
-        add_curve(description, effect->ground());
-        add_curve(description, effect->ceiling());
-        if (map) {
-            add_grid(description, *map);
-        }
-        if (effect->is_of_walls()) {
-            description.add("walls").add(wall.decay_radii).add(effect->wall_reach_m());
-        }
+        description.add("layer").add(lateral_m);
+        add_direct_effect(description, *effect);
         if (&effect->scene() == described) {
             description.add("same scene");
         } else {
@@ -148,6 +154,17 @@ std::string map_key(const std::vector<MapLayer>& layers, const PlaneOfMotion& pl
             add_scene(description, *described);
         }
     }
+    return sha256_hex(description.text());
+}
+
+std::string map_key(const VolumeMap& map) {
+    Description description;
+    description.add("downwash volume").add(version()).add(map_format_version);
+    description.add_all(map.frame().origin_m()).add(map.frame().heading_rad());
+    description.add_all(map.low_m()).add_all(map.high_m());
+    add_direct_effect(description, map.effect());
+    description.add(map.effect().is_of_walls_around() ? "around" : "ahead");
+    add_scene(description, map.effect().scene());
     return sha256_hex(description.text());
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-// Private to aeromap.
-
 #include <array>
 #include <cstddef>
 #include <cstring>
@@ -55,6 +53,17 @@ inline double value_at(const Triquadratic& coefficients, const std::array<double
     };
     const Row row = in_x(0) + y * (in_x(3) + y * in_x(6));
     return row[0] + x * (row[1] + x * row[2]);
+}
+
+/// The same in double, from 27 coefficients. One template over the lane type: the lanes' coefficients may differ.
+/// @param coefficient gives that of a number
+template <class T, class Coefficient>
+T triquadratic_at(const Coefficient& coefficient, const T& x, const T& y, const T& z) {
+    const auto in_x = [&](int first) {
+        return coefficient(first) + z * (coefficient(first + 9) + z * coefficient(first + 18));
+    };
+    const auto of_power = [&](int power) { return in_x(power) + y * (in_x(power + 3) + y * in_x(power + 6)); };
+    return of_power(0) + x * (of_power(1) + x * of_power(2));
 }
 
 }  // namespace downwash

@@ -1,81 +1,97 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
-#include <vector>
+#include <string>
+#include <string_view>
 
-#include "downwash/aeromap/aero_map.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/aeromap/volume_view.hpp"
+#include "downwash/base/bounds.hpp"
 #include "downwash/base/export.hpp"
+#include "downwash/base/stop_condition.hpp"
 #include "downwash/scene/plane_of_motion.hpp"
 
 namespace downwash {
 
-/// A volume has no more boxes than this: 2^23, about a gigabyte.
-inline constexpr std::size_t max_volume_boxes = 8388608;
+/// A volume has no more bricks than this.
+inline constexpr std::size_t max_volume_bricks = 4194304;
 
-/// K stored over a block of rotor positions in three dimensions, for vehicles that leave one plane.
+/// K over a block of rotor positions in three dimensions, for vehicles that leave one plane. Or how near walls are, if
+/// the effect is that of DirectEffect::walls_around(). Copies share what is filled.
 ///
-/// The block is a regular grid of cells at most 0.45 R wide. A cell is halved across x, lateral or z, and its halves
-/// again, until in every box the triquadratic interpolation between 27 values stays within 0.01 of the direct
-/// evaluation everywhere in the flyable area (docs/model.md 4.5). Boxes that are forbidden throughout, or where K
-/// cannot differ by more than 0.006 from 1, count as 1. Coefficients are kept as float. Immutable after construction.
+/// The block is a regular grid of cells at most 0.45 R wide, in bricks of 4 x 4 x 4. A brick is filled when a look-up
+/// first asks for it, and kept: a pure function of effect, block and place, whoever asks first. A cell is halved across
+/// x, lateral or z, and its halves again, until in every box the triquadratic interpolation between 27 values stays
+/// within 0.01 of the direct evaluation everywhere in the flyable area (docs/model.md 4.10). Boxes that are forbidden
+/// throughout, or where K cannot differ by more than 0.006 from 1, count as 1. Coefficients are kept as float.
 ///
-/// Limits: an edge is halved at most 7 times, to R / 284. Where K jumps or rises more than 0.01 within that, inside the
-/// flyable area, the bound does not hold: right beside obstacles under a min_distance_radii of 0, or as said of
-/// AeroMap.
+/// An edge is halved at most 7 times, to R / 284 (of walls twice). Boxes in which K still jumps are evaluated directly, and so is what
+/// would make a brick of more than max_brick_boxes. Safe to share between threads.
 class DOWNWASH_EXPORT VolumeMap {
  public:
+    /// Fills nothing, and looks at nothing in the scene.
     /// @param frame x and z are those of its plane; the block reaches from `lateral_low_m` to `lateral_high_m` to its
-    /// left
+    /// left. Boxes need fewest values where the frame's axes are those of the structure
     /// @param effect of a multirotor model: it is that of a vehicle at one heading (see neighbours_of)
-    /// @param threads at least 1; the bytes do not depend on it   @param on_progress see run_parallel
-    /// @throws InputError if the block is empty or not finite, or needs more than max_volume_boxes
+    /// @throws InputError if the block is empty or not finite, or needs more than max_volume_bricks
     VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const Bounds& extent,
-              double lateral_low_m, double lateral_high_m, int threads = 1,
-              const std::function<void(double)>& on_progress = {});
+              double lateral_low_m, double lateral_high_m);
 
-    /// K at the world position of a hub: interpolated in the block, evaluated directly outside (1 when not finite).
+    /// K of all surfaces at the world position of a hub; otherwise like sided_factor().
     [[nodiscard]] double factor(const Vector3& hub_m) const;
 
-    [[nodiscard]] const DirectEffect& effect() const noexcept { return *effect_; }
-    /// The number of different polynomials. Boxes of equal values share theirs, as most do along a deck.
-    [[nodiscard]] std::size_t polynomials() const noexcept { return polynomials_.size() - 1; }
-    [[nodiscard]] std::size_t memory_bytes() const noexcept;
+    /// K, with the part of the surfaces above: exactly 1, or all of K, where one side is all that matters. Interpolated
+    /// in the block, evaluated directly outside (1 when not finite). Of walls: x and y of DirectEffect::towards_wall().
+    [[nodiscard]] SidedFactor<double> sided_factor(const Vector3& hub_m) const;
+
+    /// How far a hub is from the end of the flyable area, at least: above 0 inside it, below 0 outside. 0 where that is
+    /// not known from the box around it, nor outside the block: then DirectEffect::is_flyable() tells. Never more than
+    /// R [m].
+    [[nodiscard]] double margin_m(const Vector3& hub_m) const;
+
+    /// Whether a hub is inside the flyable area. Exact.
+    [[nodiscard]] bool is_flyable(const Vector3& hub_m) const;
+
+    /// Fills what is missing, on some threads. No flight needs that.
+    /// @param threads at least 1   @param on_progress see run_parallel
+    /// @throws WorkStopped when it is over before; what was filled stays
+    void fill(int threads = 1, const std::function<void(double)>& on_progress = {},
+              const StopCondition& is_over = {}) const;
+
+    [[nodiscard]] const DirectEffect& effect() const noexcept;
+    [[nodiscard]] const PlaneOfMotion& frame() const noexcept;
+    /// Valid while the map or a copy exists.
+    [[nodiscard]] const VolumeView& view() const noexcept { return view_; }
+    /// How many bricks there are, and how many of them are filled.
+    [[nodiscard]] std::size_t bricks() const noexcept;
+    [[nodiscard]] std::size_t filled_bricks() const;
+    /// The number of polynomials that are kept now. Boxes of equal values in a brick share theirs.
+    [[nodiscard]] std::size_t polynomials() const;
+    /// The memory that the map takes now.
+    [[nodiscard]] std::size_t memory_bytes() const;
+    /// What all threads together have spent on filling so far [s].
+    [[nodiscard]] double filling_s() const noexcept;
+
+    /// What is filled, as bytes. Only a machine of the same byte order can read them.
+    [[nodiscard]] std::string to_bytes() const;
+    /// The bricks that were filled here since the last call, as bytes: not those that were read. Empty if there are
+    /// none.
+    [[nodiscard]] std::string take_new_bytes() const;
+    /// Adds the bricks of such bytes, equal to the last bit; false, and nothing is added, if they are not of this map,
+    /// or if some of their values differ from what the effect gives today.
+    bool add_bytes(std::string_view bytes);
+
+    /// A map of the same block and effect of which nothing is filled.
+    [[nodiscard]] VolumeMap unfilled() const;
+    /// Corners of the block, in the frame: x, lateral, z.
+    [[nodiscard]] const Vector3& low_m() const noexcept;
+    [[nodiscard]] const Vector3& high_m() const noexcept;
 
  private:
-    class Builder;
-    using Cell = std::array<std::uint32_t, 3>;  ///< counted along x, lateral and z
-
-    /// A halving, or a box.
-    struct Node {
-        std::uint32_t axis;   ///< axis that is halved: 0 x, 1 lateral, 2 z; no_axis: a box
-        std::uint32_t index;  ///< index of the lower half's node, behind which the upper half's stands; or that of a
-                              ///< box's polynomial
-    };
-    static constexpr std::uint32_t no_axis = 3;
-    /// The coefficients of K's polynomial in the box.
-    using Coefficients = std::array<float, 28>;
-    using KnownPolynomials = std::map<Coefficients, std::uint32_t>;  ///< and their indices
-
-    [[nodiscard]] std::size_t node_of(const Cell& cell) const noexcept {
-        return (std::size_t{cell[2]} * cells_[1] + cell[1]) * cells_[0] + cell[0];
-    }
-    void build(int threads, const std::function<void(double)>& on_progress);
-    void append(const Builder& brick, KnownPolynomials& known);
-
-    std::shared_ptr<const DirectEffect> effect_;
-    PlaneOfMotion frame_;
-    Vector3 low_m_, high_m_;  ///< corners of the block, in the frame: x, lateral, z
-    Vector3 cell_m_{};        ///< a cell's edges
-    Vector3 cells_per_m_{};
-    Cell cells_{};
-    std::vector<Node> nodes_;                ///< first those of the cells, x running fastest
-    std::vector<Coefficients> polynomials_;  ///< the first one stays unused: index 0 stands for K = 1
+    std::shared_ptr<VolumeBricks> bricks_;
+    VolumeView view_;
 };
 
 }  // namespace downwash

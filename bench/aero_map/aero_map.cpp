@@ -186,8 +186,10 @@ MapFigures measured_volume(const Problem& bridge, int repetitions) {
     MapFigures figures;
     std::shared_ptr<const VolumeMap> map;
     measure_build<VolumeMap>(figures, std::min(2, repetitions), map, [&] {
-        return std::make_shared<const VolumeMap>(effect, model->plane(), block.extent, -block.lateral_m,
-                                                 block.lateral_m);
+        auto filled =
+            std::make_shared<const VolumeMap>(effect, model->plane(), block.extent, -block.lateral_m, block.lateral_m);
+        filled->fill();
+        return filled;
     });
     RandomHubs random(block, [&](const Vector3& hub) { return effect->is_flyable(in_world(hub)); });
     measure_look_ups(

@@ -6,8 +6,11 @@
 #include <limits>
 
 #include "../support/hard_places.hpp"
+#include "../support/scratch_folder.hpp"
+#include "downwash/aeromap/map_cache.hpp"
 #include "downwash/aeromap/triquadratic.hpp"
 #include "downwash/aeromap/volume_map.hpp"
+#include "downwash/aeromap/volume_patches.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_table.hpp"
 #include "scenes.hpp"
@@ -35,8 +38,12 @@ struct Block {
     }
 };
 
-VolumeMap map_of(const std::shared_ptr<const DirectEffect>& effect, const Block& block, int threads = 2) {
-    return VolumeMap(effect, block.frame, block.extent, block.lateral_low_m, block.lateral_high_m, threads);
+VolumeMap map_of(const std::shared_ptr<const DirectEffect>& effect, const Block& block, int threads = 0) {
+    VolumeMap map(effect, block.frame, block.extent, block.lateral_low_m, block.lateral_high_m);
+    if (threads > 0) {
+        map.fill(threads);
+    }
+    return map;
 }
 
 std::vector<Obstacle> random_obstacles(test::Random& random, int count) {
@@ -130,30 +137,92 @@ TEST_CASE("A volume of a table that rises and falls, and of wall distances, is w
     CHECK(found.felt > 2000);
 }
 
-TEST_CASE("A volume is the same to the bit for any number of threads") {
+TEST_CASE("A volume is the same to the bit for any number of threads and any order of asking") {
     test::Random random(72);
     const auto effect = effect_in(random_obstacles(random, 2), 0.25);
     const Block block{{-1, 1, -0.5, 0.5}, -0.5, 0.5, {}};
     const VolumeMap one = map_of(effect, block, 1);
-    const VolumeMap two = map_of(effect, block, 2);
-    CHECK(one.memory_bytes() == two.memory_bytes());
     CHECK(one.polynomials() > 100);
+    CHECK(one.filled_bricks() == one.bricks());
+    for (const int threads : {2, 4}) {
+        CHECK(map_of(effect, block, threads).to_bytes() == one.to_bytes());
+    }
+    const VolumeMap asked = map_of(effect, block);
+    CHECK(asked.filled_bricks() == 0);
     for (int i = 0; i < 50000; ++i) {
         const Vector3 hub_m = block.any(random);
-        REQUIRE(std::bit_cast<std::uint64_t>(one.factor(hub_m)) == std::bit_cast<std::uint64_t>(two.factor(hub_m)));
+        REQUIRE(std::bit_cast<std::uint64_t>(one.factor(hub_m)) == std::bit_cast<std::uint64_t>(asked.factor(hub_m)));
+    }
+    asked.fill();
+    CHECK(asked.to_bytes() == one.to_bytes());
+}
+
+TEST_CASE("In a girder bay a volume is within 0.01 by side, and knows where one may fly") {
+    std::vector<Obstacle> bay{{"deck", Box{{12, 14, 0.216}}, {0, 0, 4}, {}},
+                              {"cross frame", Box{{0.1, 14, 0.1}}, {0.5, 0, 2.7}, {}}};
+    for (const double y_m : {-2.97, 0.0, 2.97}) {
+        bay.push_back({"web", Box{{12, 0.02, 1.37}}, {0, y_m, 3.2}, {}});
+        bay.push_back({"flange", Box{{12, 0.36, 0.03}}, {0, y_m, 2.5}, {}});
+    }
+    const auto effect = effect_in(bay, 0.229);
+    const VolumeMap map(effect, {}, {-6, 6, 0, 4}, -7, 7);
+    const std::size_t empty_bytes = map.memory_bytes();
+    test::Random random(73);
+    double worst = 0;
+    int flyable = 0;
+    int known = 0;
+    VolumePatches<double> patches(map.view());
+    double apart = 0;
+    for (int i = 0; i < 40000; ++i) {
+        const Vector3 hub_m{random.uniform(-0.6, 1.2), random.uniform(-0.8, 0.8), random.uniform(1.8, 3.9)};
+        const bool is_flyable = effect->is_flyable(hub_m);
+        const double margin_m = map.margin_m(hub_m);
+        known += margin_m != 0 ? 1 : 0;
+        REQUIRE((margin_m == 0 || (margin_m > 0) == is_flyable));
+        REQUIRE(map.is_flyable(hub_m) == is_flyable);
+        const SidedFactor<double> looked_up = map.sided_factor(hub_m);
+        const SidedFactor<double> by_patch = patches.at(hub_m[0], hub_m[1], hub_m[2]);
+        apart = std::max({apart, std::abs(by_patch.all - looked_up.all), std::abs(by_patch.above - looked_up.above),
+                          std::abs(patches.margin_m(hub_m[0], hub_m[1], hub_m[2]) - margin_m)});
+        if (is_flyable) {
+            const SidedFactor<double> direct = effect->sided_factor(hub_m);
+            worst = std::max({worst, std::abs(looked_up.all - direct.all), std::abs(looked_up.above - direct.above)});
+            ++flyable;
+        }
+    }
+    CAPTURE(worst, flyable, known, apart, map.memory_bytes());
+    CHECK(worst <= 0.01);
+    CHECK(flyable > 20000);
+    CHECK(known > 30000);
+    CHECK(apart < 1e-5);
+    CHECK(map.memory_bytes() > empty_bytes);
+    CHECK(map.memory_bytes() < 8'000'000);
+
+    SECTION("far from all surfaces bricks take no memory") {
+        const std::size_t bytes = map.memory_bytes();
+        CHECK(map.factor({-4, -5, 0.3}) == 1);
+        CHECK(map.memory_bytes() == bytes);
+    }
+    SECTION("the cache gives back what was filled, to the last bit") {
+        const test::ScratchFolder folder;
+        CHECK(MapCache(folder.path()).keep(map));
+        VolumeMap again = map.unfilled();
+        CHECK(MapCache(folder.path()).read(again));
+        CHECK(again.to_bytes() == map.to_bytes());
+        VolumeMap other(effect, {}, {-6, 6, 0, 4.5}, -7, 7);
+        CHECK_FALSE(MapCache(folder.path()).read(other));
+        std::string bytes = map.to_bytes();
+        bytes.pop_back();
+        CHECK_FALSE(map.unfilled().add_bytes(bytes));
     }
 }
 
-TEST_CASE("Over level ground a volume that is wider keeps no more values, and without effects none") {
-    const auto effect = effect_in({{"floor", Box{{40, 40, 1}}, {0, 0, -0.5}, {}}}, 0.2);
-    const VolumeMap narrow(effect, {}, {-1, 1, 0.1, 1}, -0.5, 0.5);
-    const VolumeMap wide(effect, {}, {-4, 4, 0.1, 1}, -2, 2);
-    CHECK(narrow.polynomials() > 5);
-    CHECK(wide.polynomials() == narrow.polynomials());
+TEST_CASE("Without effects a volume keeps no values") {
     AeroSettings disabled;
     disabled.enabled = false;
     for (const auto& none : {effect_in({}, 0.2), effect_in(test::bridge(), 0.2, disabled)}) {
         const VolumeMap map(none, {}, {-2, 2, 8, 10}, -1, 1);
+        map.fill();
         CHECK(map.polynomials() == 0);
         CHECK(map.factor({0.3, 0.2, 9.1}) == 1);
     }
@@ -186,4 +255,22 @@ TEST_CASE("A volume without extent or of too many cells is an error") {
                                {{-largest, largest, -largest, largest}, -largest, largest, {}}}) {
         CHECK_THROWS_AS(map_of(effect, block), InputError);
     }
+}
+
+TEST_CASE("A volume of walls is within 0.01 of the vector towards the nearest wall") {
+    const auto effect = std::make_shared<const DirectEffect>(
+        DirectEffect::walls_around(test::scene_of({{"wall", Box{{0.4, 4, 3}}, {0, 0, 1.5}, {}}}), {}, 0.2, 0.3));
+    const VolumeMap map(effect, {}, {-2, 2, 0.5, 2}, -1, 1);
+    test::Random random(74);
+    double longest = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const Vector3 center_m{random.uniform(0.3, 0.9), random.uniform(-0.4, 0.4), random.uniform(1, 1.5)};
+        const Vector3 direct = effect->towards_wall(center_m);
+        const SidedFactor<double> looked_up = map.sided_factor(center_m);
+        REQUIRE(std::abs(looked_up.all - direct[0]) <= 0.01);
+        REQUIRE(std::abs(looked_up.above - direct[1]) <= 0.01);
+        CHECK(direct[0] <= 0);  // the wall is behind
+        longest = std::max(longest, -direct[0]);
+    }
+    CHECK(longest > 0.99);
 }

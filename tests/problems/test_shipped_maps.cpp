@@ -122,7 +122,7 @@ TEST_CASE("A volume in every shipped problem without meshes is within 0.01 of th
             continue;
         }
         const PlaneOfMotion frame(*center_m, model->plane().heading_rad() + 0.1);
-        const VolumeMap map(effect, frame, {-0.4, 0.4, -0.4, 0.4}, -0.3, 0.3, 2);
+        const VolumeMap map(effect, frame, {-0.4, 0.4, -0.4, 0.4}, -0.3, 0.3);
         test::Random random(19);
         double worst = 0;
         int points = 0;
