@@ -206,7 +206,8 @@ Rows all_rows() {
     add_robot(rows);
     add_environment(rows);
     add_aero_rows(rows);
-    add_uncertainty_rows(rows, [](const Problem& problem) -> const Robot& { return problem.robot; });
+    add_uncertainty_rows(rows, uncertainty_keys(),
+                         [](const Problem& problem) -> const Robot& { return problem.robot; });
     add_start(rows);
     add_goal_rows(rows);
     add_motion(rows);

@@ -10,6 +10,8 @@
 #include "downwash/base/export.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/vector3.hpp"
+#include "downwash/controllers/space_limits.hpp"
+#include "downwash/controllers/yaw_mode.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/space_goal.hpp"
 #include "downwash/scene/shapes.hpp"
@@ -36,34 +38,15 @@ struct SpaceStart {
     std::vector<double> joint_rates_rad_s;  ///< one for each joint; empty: all zero
 };
 
-/// What yaw does along a reference.
-enum class YawMode {
-    free,    ///< what goals ask for, by the shortest turn
-    hold,    ///< that of the start
-    along,   ///< the nose points along the way
-    toward,  ///< the nose points to a point
-};
-
 /// Each once, in their order.
 inline constexpr std::array all_yaw_modes{YawMode::free, YawMode::hold, YawMode::along, YawMode::toward};
 
 /// Name as in problem files: "free".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(YawMode mode);
 
-/// Limits of a reference in space: Euclidean over the translations, apart for yaw and for every joint; all > 0.
-struct SpaceMotion {
-    double max_speed_m_s = 1.0;
-    double max_acceleration_m_s2 = 0.5;
-    double max_jerk_m_s3 = 4;                                 ///< see MotionLimits::max_jerk_m_s3
-    double max_yaw_rate_rad_s = 0.7853981633974483;           ///< 45 degrees per second, PX4 MPC_YAWRAUTO_MAX
-    double max_yaw_acceleration_rad_s2 = 1.0471975511965976;  ///< 60 degrees/s2, PX4 MPC_YAWRAUTO_ACC
-    double max_joint_rate_rad_s = 0.7853981633974483;
-    double max_joint_acceleration_rad_s2 = 1.5707963267948966;
-    /// Of the force |a + g| that a point mass needs, over its weight, > 1; empty: any.
-    std::optional<double> max_thrust_ratio;
-    std::optional<double> max_tilt_rate_rad_s;  ///< how fast that force turns; empty: at any rate
-    YawMode yaw = YawMode::free;
-    Vector3 yaw_toward_m = {};  ///< with YawMode::toward
+/// How references move and where they look.
+struct SpaceMotionSettings : SpaceMotionLimits {
+    YawRule yaw;
 };
 
 /// A motion planning problem in space, complete in itself.
@@ -78,7 +61,7 @@ struct SpaceProblem {
     SpaceStart start;
     std::vector<SpaceGoal> goals;  ///< to be reached and held one after the other, one at least
     bool in_any_order = false;     ///< whether the planner chooses the order of the goals
-    SpaceMotion motion;
+    SpaceMotionSettings motion;    ///< one limit for all joints
     PlannerSettings planner;
 };
 

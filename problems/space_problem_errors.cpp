@@ -136,10 +136,10 @@ Errors start_too_fast(const SpaceProblem& p) {
                                                     to_text(p.motion.max_speed_m_s)});
     }
     for (const double rate : p.start.joint_rates_rad_s) {
-        if (std::abs(rate) > p.motion.max_joint_rate_rad_s) {
+        if (std::abs(rate) > p.motion.max_joint_rate_rad_s[0]) {
             errors.push_back({"start.joint_rates_rad_s",
                               "has " + rounded(rate) + ", faster than motion.max_joint_rate_deg_s: expected at most " +
-                                  rounded(p.motion.max_joint_rate_rad_s) + " in size"});
+                                  rounded(p.motion.max_joint_rate_rad_s[0]) + " in size"});
             break;
         }
     }

@@ -12,6 +12,7 @@
 #include "downwash/problems/space_rows.hpp"
 #include "downwash/problems/uncertainty_parameters.hpp"
 #include "downwash/simulation/space_robot_parameters.hpp"
+#include "downwash/simulation/space_world_parameters.hpp"
 
 namespace downwash {
 namespace {
@@ -113,39 +114,55 @@ void add_start(Rows& rows) {
 
 /// Far below what moves a vehicle; with less, a motion has more control ticks than can be counted.
 template <class Member>
-Row limit(std::string_view path, std::string_view description, double most, Member SpaceMotion::*member) {
-    return number(path, description, in(&SpaceProblem::motion, member)).between(1e-6, most);
+Row limit(std::string_view path, std::string_view description, double most, Member member) {
+    return number(path, description, member).between(1e-6, most);
+}
+
+/// Problem files have one limit for all joints.
+Row joint_limit(std::string_view path, std::string_view description, double most,
+                std::array<double, max_joints> SpaceMotionLimits::*member) {
+    Row row = limit(
+        path, description, most, [member](auto& p) -> auto& { return (p.motion.*member)[0]; });
+    row.set = [member, set = row.set](SpaceProblem& p, std::size_t i, const Value& value) {
+        set(p, i, value);
+        p.motion.*member = SpaceMotionLimits::every((p.motion.*member)[0]);
+    };
+    return row;
 }
 
 void add_motion(Rows& rows) {
-    using M = SpaceMotion;
-    append(rows,
-           {group("motion", "limits of the reference"), limit("motion.max_speed_m_s", "speed", 100, &M::max_speed_m_s),
-            limit("motion.max_acceleration_m_s2", "acceleration", 100, &M::max_acceleration_m_s2),
-            limit("motion.max_jerk_m_s3", "jerk; PX4's default for its own missions", 10000, &M::max_jerk_m_s3),
-            limit("motion.max_yaw_rate_deg_s", "yaw rate", 3600, &M::max_yaw_rate_rad_s),
-            limit("motion.max_yaw_acceleration_deg_s2", "yaw acceleration", 36000, &M::max_yaw_acceleration_rad_s2),
-            limit("motion.max_joint_rate_deg_s", "rate of each joint", 3600, &M::max_joint_rate_rad_s),
-            limit("motion.max_joint_acceleration_deg_s2", "acceleration of each joint", 36000,
-                  &M::max_joint_acceleration_rad_s2),
-            number("motion.max_thrust_ratio",
-                   "force that a point mass needs to follow the reference, over its weight; null: any force",
-                   in(&SpaceProblem::motion, &M::max_thrust_ratio))
-                .between(1.001, 100),
-            number("motion.max_tilt_rate_deg_s", "how fast the direction of that force turns; null: at any rate",
-                   in(&SpaceProblem::motion, &M::max_tilt_rate_rad_s))
-                .between(0.1, 36000),
-            parameters::choice<SpaceProblem>(
-                "motion.yaw",
-                "free: what goals ask for, by the shortest turn; hold: that of the start; along: the nose along the "
-                "way; toward: the nose to a point",
-                parameters::named(all_yaw_modes), in(&SpaceProblem::motion, &M::yaw)),
-            space_vector<SpaceProblem>("motion.yaw_toward_m", "the point, in the world",
-                                       in(&SpaceProblem::motion, &M::yaw_toward_m))
-                .between(-farthest_m, farthest_m)
-                .is_required()
-                .only("with yaw: toward",
-                      [](const SpaceProblem& p, std::size_t) { return p.motion.yaw == YawMode::toward; })});
+    using M = SpaceMotionSettings;
+    const auto of = [](auto member) { return in(&SpaceProblem::motion, member); };
+    append(
+        rows,
+        {group("motion", "limits of the reference"), limit("motion.max_speed_m_s", "speed", 100, of(&M::max_speed_m_s)),
+         limit("motion.max_acceleration_m_s2", "acceleration", 100, of(&M::max_acceleration_m_s2)),
+         limit("motion.max_jerk_m_s3", "jerk; PX4's default for its own missions", 10000, of(&M::max_jerk_m_s3)),
+         limit("motion.max_yaw_rate_deg_s", "yaw rate", 3600, of(&M::max_yaw_rate_rad_s)),
+         limit("motion.max_yaw_acceleration_deg_s2", "yaw acceleration", 36000, of(&M::max_yaw_acceleration_rad_s2)),
+         joint_limit("motion.max_joint_rate_deg_s", "rate of each joint", 3600, &M::max_joint_rate_rad_s),
+         joint_limit("motion.max_joint_acceleration_deg_s2", "acceleration of each joint", 36000,
+                     &M::max_joint_acceleration_rad_s2),
+         number("motion.max_thrust_ratio",
+                "force that a point mass needs to follow the reference, over its weight; null: any force",
+                of(&M::max_thrust_ratio))
+             .between(1.001, 100),
+         number("motion.max_tilt_rate_deg_s", "how fast the direction of that force turns; null: at any rate",
+                of(&M::max_tilt_rate_rad_s))
+             .between(0.1, 36000),
+         parameters::choice<SpaceProblem>(
+             "motion.yaw",
+             "free: what goals ask for, by the shortest turn; hold: that of the start; along: the nose along the "
+             "way; toward: the nose to a point",
+             parameters::named(all_yaw_modes), [](auto& p) -> auto& { return p.motion.yaw.mode; }),
+         parameters::pair<SpaceProblem>(
+             "motion.yaw_toward_m", "the point, in the world", {"x", "y"},
+             [](auto& p) -> auto& { return p.motion.yaw.target_m[0]; },
+             [](auto& p) -> auto& { return p.motion.yaw.target_m[1]; })
+             .between(-farthest_m, farthest_m)
+             .is_required()
+             .only("with yaw: toward",
+                   [](const SpaceProblem& p, std::size_t) { return p.motion.yaw.mode == YawMode::toward; })});
 }
 
 Rows all_rows() {
@@ -160,7 +177,8 @@ Rows all_rows() {
     add_robot(rows);
     add_environment(rows);
     add_aero(rows);
-    add_uncertainty_rows(rows, [](const SpaceProblem& problem) { return uncertain_parts_of(problem.robot); });
+    add_uncertainty_rows(rows, space_uncertainty_keys(),
+                         [](const SpaceProblem& problem) { return uncertain_parts_of(problem.robot); });
     add_start(rows);
     add_space_goal_rows(rows);
     add_motion(rows);

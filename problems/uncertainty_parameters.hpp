@@ -2,6 +2,7 @@
 
 // Private to problems/.
 
+#include <span>
 #include <vector>
 
 #include "downwash/base/parameter_factories.hpp"
@@ -27,9 +28,11 @@ Uncertainty& uncertainty_of(Model& problem) {
 }
 
 /// Adds uncertainty with everything in it to a problem's table.
+/// @param keys below `uncertainty`
 /// @param robot_of gives the Robot that conditions ask: (const Model&) -> const Robot& or Robot
 template <class Model, class RobotOf>
-void add_uncertainty_rows(std::vector<Parameter<Model>>& rows, RobotOf robot_of) {
+void add_uncertainty_rows(std::vector<Parameter<Model>>& rows, std::span<const UncertaintyKey> keys,
+                          RobotOf robot_of) {
     rows.push_back(parameters::group<Model>(
                        "uncertainty", "what is not known exactly; plans survive it. none: everything is nominal",
                        [](const Model& p, std::size_t) { return p.uncertainty.has_value(); },
@@ -40,7 +43,7 @@ void add_uncertainty_rows(std::vector<Parameter<Model>>& rows, RobotOf robot_of)
                            }
                        })
                        .or_none());
-    for (const UncertaintyKey& key : uncertainty_keys()) {
+    for (const UncertaintyKey& key : keys) {
         add_uncertainty_row(
             rows, key, [](auto& p) -> auto& { return uncertainty_of(p); }, robot_of);
         if (key.is_of_robot && key.spread != nullptr) {

@@ -8,7 +8,7 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/controllers/space_law.hpp"
 #include "downwash/dynamics/space_plant.hpp"
-#include "downwash/scene/space_shape.hpp"
+#include "downwash/scene/space_robot_shape.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash {
@@ -43,6 +43,9 @@ struct SpaceRobot {
         return sum_kg;
     }
 };
+
+/// What of a robot can touch something: its bodies, at the joints of its arm.
+[[nodiscard]] DOWNWASH_EXPORT SpaceRobotShape shape_of(const SpaceRobot& robot);
 
 /// What makes a robot impossible to fly: numbers out of range, an inertia that no body has, rotors that cannot turn the
 /// vehicle or lift the weight, joints too weak to hold the arm. Keys are relative to the robot ("rotors.positions_m").

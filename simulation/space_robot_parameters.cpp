@@ -10,6 +10,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/scene/shape_parameters.hpp"
 #include "downwash/simulation/space_controller_parameters.hpp"
+#include "downwash/simulation/space_world_parameters.hpp"
 #include "downwash/simulation/uncertainty_parameters.hpp"
 
 namespace downwash {
@@ -387,7 +388,7 @@ void add_uncertainty(Rows& rows) {
         "uncertainty",
         "what is not known exactly of this vehicle: defaults for problems that have an uncertainty; others ignore it",
         &SpaceRobot::uncertainty));
-    for (const UncertaintyKey& key : uncertainty_keys()) {
+    for (const UncertaintyKey& key : space_uncertainty_keys()) {
         if (key.is_of_robot) {
             add_uncertainty_row(
                 rows, key, [](auto& r) -> auto& { return uncertainty_of(r); }, uncertain_parts_of);

@@ -118,7 +118,7 @@ const Edit problem_edits[] = {
      "11:3: goal.pose.rpy_deg is missing: expected [roll, pitch, yaw] in deg from -360 to 360"},
     {"max_speed_m_s: 2", "yaw: sideways",
      "13:15: motion.yaw is 'sideways': expected one of free, hold, along or toward"},
-    {"max_speed_m_s: 2", "yaw: hold, yaw_toward_m: [0, 0, 0]",
+    {"max_speed_m_s: 2", "yaw: hold, yaw_toward_m: [0, 0]",
      "13:21: motion.yaw_toward_m has a meaning only with yaw: toward: remove it"},
     {"{name: pole, ", "{name: ground, ",
      "8:14: environment.obstacles[1].name is 'ground' like an obstacle before it: expected a name used once"},

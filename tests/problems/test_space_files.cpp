@@ -55,7 +55,7 @@ TEST_CASE("the files of a problem in space and of its robot give their values") 
     CHECK(goal.position_m == Vector3{3, -2, 2.5});
     CHECK(*goal.direction == Vector3{0, 0, 1});
     CHECK(problem.motion.max_speed_m_s == 2);
-    CHECK(problem.motion.yaw == YawMode::free);
+    CHECK(problem.motion.yaw.mode == YawMode::free);
 
     const SpaceRobot& robot = problem.robot;
     CHECK(robot.joints() == 2);
@@ -88,8 +88,8 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
         problem.goals = {configuration, point, pose, camera, contact, choice};
         problem.in_any_order = in_any_order;
         problem.start.attitude = {1, 0, 0, 0.2};
-        problem.motion.yaw = YawMode::toward;
-        problem.motion.yaw_toward_m = {1, 2, 1.0 / 3};
+        problem.motion.yaw.mode = YawMode::toward;
+        problem.motion.yaw.target_m = {1, 1.0 / 3};
         const SpaceProblem again = read_again(folder, problem);
         CHECK(again.in_any_order == in_any_order);
         REQUIRE(again.goals.size() == 6);
@@ -102,7 +102,7 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
         CHECK(*std::get<SpaceContactGoal>(again.goals[4].kind).position_m == Vector3{4, 2, 2});
         REQUIRE(again.goals[5].any_of.size() == 2);
         CHECK(std::get<SpaceEndEffectorGoal>(again.goals[5].any_of[0].kind).position_m[0] == 1.0 / 7);
-        CHECK(again.motion.yaw_toward_m[2] == 1.0 / 3);
+        CHECK(again.motion.yaw.target_m[1] == 1.0 / 3);
         CHECK(effective_yaml(again, folder / ".") == effective_yaml(problem, folder / "."));
         CHECK(problem_sha256(again) == problem_sha256(problem));
     }
