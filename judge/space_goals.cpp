@@ -271,6 +271,8 @@ std::optional<SpaceTouch> SpaceGoals::touch_from(const SpaceContactGoal& goal, d
     }
     // Flat all around, as far as a corner of what touches reaches along each way and the tolerance farther.
     constexpr int ways = 24;
+    const double near_m = std::min(0.01, away_m);
+    const Vector3d foot_m = middle_m - away_m * normal;  // on the true surface
     for (int i = 0; i < ways; ++i) {
         const Eigen::AngleAxisd turn(2 * std::numbers::pi * i / ways, normal);
         const Vector3d way = turn * normal.unitOrthogonal();
@@ -281,15 +283,14 @@ std::optional<SpaceTouch> SpaceGoals::touch_from(const SpaceContactGoal& goal, d
                 std::max(reach_m, way.dot(body.position_m + body.attitude * lever_of(nominal_, point) - middle_m));
         }
         for (const double share : {0.25, 0.5, 0.75, 1.0}) {
-            const Vector3d there_m = middle_m + share * (reach_m + goal.tolerance_m) * way;
-            if (!(std::abs(obstacle.distance_m(there_m) - away_m) <= flatness_m)) {
+            const Vector3d there_m = foot_m + near_m * normal + share * (reach_m + goal.tolerance_m) * way;
+            if (!(std::abs(obstacle.distance_m(there_m) - near_m) <= flatness_m)) {
                 return std::nullopt;
             }
         }
     }
     const std::vector<BodyFrame> frames = frames_of(nominal_, at.bodies, SpaceWorld{});
     const double beyond_m = is_frame ? 0 : obstacles_.reach_beyond_m(frames, frames.size() - 1, at.tip_m, -normal);
-    const Vector3d foot_m = middle_m - away_m * normal;  // on the true surface
     Vector3d touched_m = foot_m;
     if (goal.position_m) {
         const double above_m = normal.dot(vector_of(*goal.position_m) - foot_m);

@@ -130,13 +130,17 @@ Vector3 slope_at(const Scene& obstacle, const Vector3& at_m, double step_m) {
     return slope;
 }
 
-/// Whether the surface is flat around a point's foot. @param points that touch, from their middle, in the world
+/// Whether the surface is flat around a point's foot: points a little in front of it are as far away everywhere.
+/// @param points that touch, from their middle, in the world
 bool is_flat(const Scene& obstacle, const Vector3& at_m, const Vector3& normal, double away_m, double around_m,
              const std::vector<Vector3>& points) {
     const Vector3 some = std::abs(normal[0]) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
     Vector3 u = cross(normal, some);
     u = (1 / length_of(u)) * u;
     const Vector3 v = cross(normal, u);
+    constexpr double nearest_m = 0.01;
+    const double near_m = std::min(away_m, nearest_m);
+    const Vector3 foot_m = at_m - (away_m - near_m) * normal;
     constexpr int ways = 8;
     for (int i = 0; i < ways; ++i) {
         const auto [sine, cosine] = lane::sin_cos(i * (6.283185307179586 / ways));
@@ -146,8 +150,8 @@ bool is_flat(const Scene& obstacle, const Vector3& at_m, const Vector3& normal, 
             reach_m = std::max(reach_m, dot(point, way));
         }
         for (const double share : {0.5, 1.0}) {
-            const double there_m = distance_m(obstacle, at_m + share * (reach_m + around_m) * way);
-            if (!(std::abs(there_m - away_m) <= flatness_m)) {
+            const double there_m = distance_m(obstacle, foot_m + share * (reach_m + around_m) * way);
+            if (!(std::abs(there_m - near_m) <= flatness_m)) {
                 return false;
             }
         }

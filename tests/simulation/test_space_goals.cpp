@@ -170,11 +170,9 @@ TEST_CASE("A camera has to be near enough, to aim, to look in the direction and 
 
 TEST_CASE("A target belongs to what it lies on, up to two centimetres deep, and goes with the scene") {
     const SpaceCameraGoal goal{{1, 3.5, 2.9}, 0.5, 1.5, {}, 1, 5 * degree, true};
-    const auto wall = [](double face_m) {
-        return std::vector<Obstacle>{box("wall", {4, 1, 4}, {1, face_m + 0.5, 3})};
-    };
+    const auto wall = [](double face_m) { return std::vector<Obstacle>{box("wall", {4, 1, 4}, {1, face_m + 0.5, 3})}; };
     CHECK(is_met_at(goal, to_the_left(), wall(3.5)));
-    CHECK(is_met_at(goal, to_the_left(), wall(3.482)));        // less the beam's own millimetre
+    CHECK(is_met_at(goal, to_the_left(), wall(3.482)));  // less the beam's own millimetre
     CHECK_FALSE(is_met_at(goal, to_the_left(), wall(3.478)));
     SpaceWorld world;
     world.scene_m = {0, -0.1, 0};
