@@ -103,6 +103,9 @@ class DOWNWASH_EXPORT SpaceLoop {
     [[nodiscard]] virtual bool is_flyable() = 0;
 };
 
+/// @throws InputError if the robot has more joints than this library was built for
+DOWNWASH_EXPORT void throw_if_too_many_joints(const SpaceRobot& robot);
+
 /// What a SpaceLoop is made of.
 struct SpaceLoopSetup {
     const SpaceRobot& robot;
