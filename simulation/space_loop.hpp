@@ -53,6 +53,9 @@ struct SpaceFlightRow {
 
 namespace simulation {
 
+/// @throws InputError if the robot has more joints than this library was built for
+DOWNWASH_EXPORT void require_built_joints(const SpaceRobot& robot);
+
 /// How surfaces act on a robot besides the field that says where.
 struct SpaceAero {
     TiltLoss tilt_loss;
@@ -102,9 +105,6 @@ class DOWNWASH_EXPORT SpaceLoop {
     /// Whether every rotor is in the flyable area.
     [[nodiscard]] virtual bool is_flyable() = 0;
 };
-
-/// @throws InputError if the robot has more joints than this library was built for
-DOWNWASH_EXPORT void throw_if_too_many_joints(const SpaceRobot& robot);
 
 /// What a SpaceLoop is made of.
 struct SpaceLoopSetup {

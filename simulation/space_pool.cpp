@@ -210,7 +210,7 @@ std::unique_ptr<SpacePool::Impl> made(const SpacePoolSetup& setup, int threads, 
 }  // namespace
 
 SpacePool::SpacePool(const SpacePoolSetup& setup, int threads, Instructions instructions) {
-    simulation::throw_if_too_many_joints(setup.robot);
+    simulation::require_built_joints(setup.robot);
     impl_ = made(setup, threads, instructions, std::make_integer_sequence<int, DOWNWASH_MAX_JOINTS + 1>());
 }
 
