@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 #include <utility>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/judge/placement.hpp"
 #include "downwash/judge/solids.hpp"
 #include "downwash/judge/space_surroundings.hpp"
@@ -15,8 +15,6 @@ namespace downwash::judge {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Pose pose_of(const BodyFrame& frame) {
     Pose pose = moved(frame.origin_m);

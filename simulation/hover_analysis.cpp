@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/portable_math.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 #include "downwash/simulation/effect_slope.hpp"
@@ -30,8 +30,6 @@ constexpr std::array<std::string_view, 7> limit_names = {"none", "arm_angle", "r
 constexpr double radius_slack = 1e-9;
 
 using simulation::state_numbers;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Of a state without older motions, on the stack.
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, state_numbers, state_numbers>;

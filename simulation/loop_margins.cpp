@@ -5,11 +5,11 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/numbers.hpp"
 #include "downwash/dynamics/flight_step.hpp"
@@ -22,7 +22,6 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr std::array<std::string_view, 3> input_names = {"thrust", "pitch_torque", "joint_torque"};
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// One tick, with something added to a command between controller and plant.
 struct Disturbed {
