@@ -37,13 +37,13 @@ std::string text_at(const nlohmann::json& json, const char* pointer) {
 }
 
 /// What solution.json says of itself and of the files beside it.
-struct Claims {
+struct RunClaims {
     bool has_plan = false;
     ProblemReference problem;
     FileDigests files;  ///< empty in solutions of former versions
 };
 
-Claims take_solution(const fs::path& file, RunRecord& run) {
+RunClaims take_solution(const fs::path& file, RunRecord& run) {
     using Json = nlohmann::json;
     bool is_deep = false;
     const Json solution = Json::parse(
@@ -61,7 +61,7 @@ Claims take_solution(const fs::path& file, RunRecord& run) {
     }
     run.status = text_at(solution, "/status");
     run.outcome = text_at(solution, "/execution/outcome");
-    Claims claims;
+    RunClaims claims;
     const auto plan = solution.find("plan");
     claims.has_plan = plan != solution.end() && !plan->is_null();
     claims.problem = {text_at(solution, "/problem/name"), text_at(solution, "/problem/file"),
@@ -94,7 +94,7 @@ void check_file(const fs::path& file, const std::string& content, const FileDige
 }
 
 /// The same for the problem in effective.yaml.
-void check_problem(const fs::path& file, const Problem& problem, const Claims& claims) {
+void check_problem(const fs::path& file, const Problem& problem, const RunClaims& claims) {
     check_digest(file, problem_sha256(problem), claims.problem.sha256);
 }
 
@@ -209,7 +209,7 @@ RunRecord read_run(const fs::path& folder) {
     RunRecord run;
     const fs::path solution = folder / solution_name;
     run.solution_text = text_of(solution, max_solution_bytes);
-    const Claims claims = take_solution(solution, run);
+    const RunClaims claims = take_solution(solution, run);
     const fs::path problem = folder / "effective.yaml";
     run.problem_text = text_of(problem);
     run.problem = read_problem(problem);
@@ -243,7 +243,7 @@ ProblemReference problem_of_solution(const fs::path& file) {
 void require_whole_run(const fs::path& folder) {
     RunRecord run;
     run.solution_text = text_of(folder / solution_name);
-    const Claims claims = take_solution(folder / solution_name, run);
+    const RunClaims claims = take_solution(folder / solution_name, run);
     std::error_code ignored;
     for (const char* name : {"trajectory.csv", "tree.csv"}) {
         if (const fs::path file = folder / name; fs::exists(file, ignored)) {
