@@ -1,8 +1,14 @@
 # shellcheck shell=bash
-# Steps of a check, each run to its end whatever the others say, and their sum. Sourced by run and full.
+# Steps of a check, each run to its end whatever the others say, their sum, and how long each took. Sourced by run and full.
 
 ctest_passed=0
 failed=0
+durations=()
+
+# took NAME SECONDS: a line for the table of finish.
+took() {
+    durations+=("$(printf '%7d s  %s' "$2" "$1")")
+}
 
 # step NAME COMMAND...: the command's success or failure as one entry of the sum.
 step() {
@@ -15,6 +21,7 @@ step() {
         printf '=== %s: FAILED (%d s)\n' "$name" $((SECONDS - begin))
         failed=$((failed + 1))
     fi
+    took "$name" $((SECONDS - begin))
 }
 
 # ctest_step NAME COMMAND...: the same for a command that ends in CTest's report, whose tests are counted one by one.
@@ -36,10 +43,14 @@ ctest_step() {
         failed=$((failed + 1))
     fi
     printf '=== %s: exit code %d (%d s)\n' "$name" "$code" $((SECONDS - begin))
+    took "$name" $((SECONDS - begin))
 }
 
 # Tests that passed are CTest's; what failed are those of CTest and failed steps. Ends the script.
 finish() {
+    printf '\n'
+    printf '%s\n' "${durations[@]}"
+    printf '%7d s  in all\n' "$SECONDS"
     printf '\n%d passed, %d failed\n' "$ctest_passed" "$failed"
     [[ $failed -eq 0 ]] && exit 0
     exit 1

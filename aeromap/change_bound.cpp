@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <memory_resource>
 #include <vector>
 
+#include "downwash/base/infinity.hpp"
+
 namespace downwash {
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 SidedChange max_change(const DirectEffect& effect, const BoundingBox& hubs) {
     if (effect.settings().map || effect.is_of_walls()) {

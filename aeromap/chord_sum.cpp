@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <vector>
 
 #include "downwash/aeromap/chord_envelope.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Where parts change k by less, they are left out.
 constexpr double negligible_stake = 1e-4;
@@ -22,13 +22,13 @@ constexpr double negligible_stake = 1e-4;
 constexpr int curve_pieces = 16;
 
 /// A point of a surface seen from the disc: along and across the chords, and its gap, negative on the other side.
-struct Corner {
+struct FaceCorner {
     double u, v, gap;
 };
 
 /// A plane face over or under the disc.
 struct LocalFace {
-    std::array<Corner, 4> corners;
+    std::array<FaceCorner, 4> corners;
     std::size_t corner_count;
     double v_low, v_high;
 };
@@ -131,7 +131,7 @@ class ChordSum {
             double nearest = infinity;
             for (std::size_t i = 0; i < face.corner_count; ++i) {
                 const auto& [x, y, z] = face.corners_m[i];
-                Corner& corner = local.corners[i];
+                FaceCorner& corner = local.corners[i];
                 corner = {frame_.u_of(x, y), frame_.v_of(x, y),
                           query_.side == Side::below ? query_.hub_m[2] - z : z - query_.hub_m[2]};
                 local.v_low = std::min(local.v_low, corner.v);
@@ -159,11 +159,11 @@ class ChordSum {
     }
 
     void add_stretch(const LocalFace& face, double v, double half) {
-        std::array<Corner, 2> ends{};
+        std::array<FaceCorner, 2> ends{};
         std::size_t count = 0;
         for (std::size_t i = 0; i < face.corner_count; ++i) {
-            const Corner& a = face.corners[i];
-            const Corner& b = face.corners[i + 1 < face.corner_count ? i + 1 : 0];
+            const FaceCorner& a = face.corners[i];
+            const FaceCorner& b = face.corners[i + 1 < face.corner_count ? i + 1 : 0];
             if ((a.v < v) != (b.v < v) && count < 2) {
                 const double part = (v - a.v) / (b.v - a.v);
                 ends[count++] = {a.u + part * (b.u - a.u), v, a.gap + part * (b.gap - a.gap)};
@@ -171,8 +171,8 @@ class ChordSum {
         }
         if (count == 2) {
             const bool is_forward = ends[0].u <= ends[1].u;
-            const Corner& low = ends[is_forward ? 0 : 1];
-            const Corner& high = ends[is_forward ? 1 : 0];
+            const FaceCorner& low = ends[is_forward ? 0 : 1];
+            const FaceCorner& high = ends[is_forward ? 1 : 0];
             add_clipped({low.u, high.u, low.gap, high.gap}, half);
         }
     }

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <list>
 #include <memory_resource>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,13 +16,14 @@
 #include "downwash/aeromap/gauss_rule.hpp"
 #include "downwash/aeromap/outline_crossings.hpp"
 #include "downwash/aeromap/row_average.hpp"
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
+
 /// Where obstacles change k by less, a relative error of one percent does no harm.
 constexpr double far_stake = 0.01;
 /// The nodes of Gauss' rule of two points.

@@ -4,17 +4,17 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+
+#include "downwash/base/infinity.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// A box shows as many faces to one side.
 constexpr std::size_t max_planes = 3;
 
 /// The gap of a plane along a chord: that at u = 0 and its rate.
-struct Line {
+struct SurfaceLine {
     double gap_m, rate;
 };
 
@@ -119,13 +119,13 @@ bool add_plane_stretches(const DiscQuery& query, const ChordFrame& frame, const 
     if (count == 0 || count > max_planes) {
         return false;
     }
-    std::array<Line, max_planes> lines{};
+    std::array<SurfaceLine, max_planes> lines{};
     for (std::size_t i = 0; i < count; ++i) {
         lines[i] = {plane_gap_m(query, seen[i], frame.x_of(0, v), frame.y_of(0, v)),
                     plane_rate(query, seen[i], frame.du_x, frame.du_y)};
     }
     // The line that is farthest at the low end, then those that overtake it, each with a greater rate.
-    Line line = lines[0];
+    SurfaceLine line = lines[0];
     for (std::size_t i = 1; i < count; ++i) {
         const double lead = (lines[i].gap_m - line.gap_m) + (lines[i].rate - line.rate) * shadow.low;
         line = lead > 0 ? lines[i] : line;
@@ -134,7 +134,7 @@ bool add_plane_stretches(const DiscQuery& query, const ChordFrame& frame, const 
     std::size_t stretch_count = 0;
     double from = shadow.low;
     for (std::size_t turn = 0; turn < count && from < shadow.high; ++turn) {
-        Line next = line;
+        SurfaceLine next = line;
         double to = shadow.high;
         for (std::size_t i = 0; i < count; ++i) {
             const double gain = lines[i].rate - line.rate;

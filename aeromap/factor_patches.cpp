@@ -12,7 +12,7 @@ namespace downwash {
 namespace {
 
 /// The greatest error of the parabolas at the points looked at.
-constexpr double allowed_error = 0.002;
+constexpr double allowed_difference = 0.002;
 
 /// The finest division of a cell has 512 steps, and its probes look at their quarters.
 constexpr std::uint64_t cell_units = 4 * max_steps;
@@ -83,7 +83,8 @@ bool FactorPatches::is_met(const Square& square, const Values& values) {
     const auto is_close = [&](unsigned x, unsigned z) {
         const SidedFactor<double> there = sample(square.x + x * (square.side / 4), square.z + z * (square.side / 4));
         const SidedFactor<double> met = biquadratic(values, 0.25 * x, 0.25 * z);
-        return std::abs(there.all - met.all) <= allowed_error && std::abs(there.above - met.above) <= allowed_error;
+        return std::abs(there.all - met.all) <= allowed_difference &&
+               std::abs(there.above - met.above) <= allowed_difference;
     };
     return is_close(1, 1) && is_close(3, 3) && is_close(3, 1) && is_close(1, 3);
 }

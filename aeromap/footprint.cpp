@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory>
 #include <memory_resource>
 #include <vector>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
@@ -157,7 +157,6 @@ double Footprint::area_in_disc_m2(double x, double y, double radius) const noexc
 }
 
 Interval Footprint::shadow_on_line(double px, double py, double dx, double dy) const noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     Interval inside{-infinity, infinity};
     for (const Edge& side : sides_) {
         const double room = side.nx * (side.ax - px) + side.ny * (side.ay - py);

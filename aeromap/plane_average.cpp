@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory_resource>
+#include <numbers>
 #include <vector>
 
 #include "downwash/aeromap/gauss_rule.hpp"
@@ -13,7 +14,7 @@
 namespace downwash {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// The average over a disc of what depends on the distance from a line through its middle: distances in radii, weights
 /// that add up to 1. Gauss and Chebyshev's rule of the second kind, exact for polynomials up to the 23rd power.

@@ -5,18 +5,18 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
+#include <numbers>
 #include <span>
 #include <utility>
 
 #include "downwash/aeromap/chord_envelope.hpp"
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// From half of this doubt on the next level takes over.
 constexpr double allowed_doubt = 5e-4;

@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory_resource>
 #include <utility>
 
+#include "downwash/base/infinity.hpp"
+
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Discs in the flyable area are 0.3 radii away from everything, unless a setting says otherwise.
 constexpr double slab_radii = 0.25;

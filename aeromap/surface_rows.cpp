@@ -1,16 +1,14 @@
 #include "downwash/aeromap/surface_rows.hpp"
 
 #include <cmath>
-#include <limits>
 #include <memory_resource>
 #include <tuple>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/scene/shadow_outline.hpp"
 
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Line = SurfaceRows::Line;
 using Piece = SurfaceRows::Piece;

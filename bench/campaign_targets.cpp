@@ -12,7 +12,7 @@ std::string count_text(const Share& share) {
     return std::to_string(share.hits) + "/" + std::to_string(share.attempts);
 }
 
-std::string seconds_text(double seconds) {
+std::string shown_seconds(double seconds) {
     return std::isfinite(seconds) ? to_text(seconds, 3) + " s" : "none";
 }
 
@@ -59,7 +59,7 @@ class TargetCheck {
     void check_times(const CellFigures& cell) {
         const auto within = [&](const char* what, const std::optional<double>& limit_s, double found_s) {
             if (limit_s) {
-                add(cell, what + seconds_text(*limit_s), seconds_text(found_s), found_s <= *limit_s);
+                add(cell, what + shown_seconds(*limit_s), shown_seconds(found_s), found_s <= *limit_s);
             }
         };
         within("median first solution within ", target_.first_solution_median_s, cell.first_solution_s.median);
@@ -97,7 +97,7 @@ class TargetCheck {
         }
         const double ratio = median_cost(rows_[cell], *target_.cost_after_s) / best;
         add(report_.cells[cell],
-            "median cost after " + seconds_text(*target_.cost_after_s) + " at most " + to_text(*target_.cost_to_best) +
+            "median cost after " + shown_seconds(*target_.cost_after_s) + " at most " + to_text(*target_.cost_to_best) +
                 " of the minimum executed cost",
             std::isfinite(ratio) ? to_text(ratio, 4) : "none", is_complete && ratio <= *target_.cost_to_best);
     }
@@ -115,8 +115,8 @@ class TargetCheck {
             const double its = median_cost(rows_[other], *target_.cheaper_than_after_s);
             const auto text = [](double cost) { return std::isfinite(cost) ? to_text(cost, 5) : "none"; };
             add(figures,
-                "median cost after " + seconds_text(*target_.cost_after_s) + " below that of " + rival.algorithm +
-                    " after " + seconds_text(*target_.cheaper_than_after_s),
+                "median cost after " + shown_seconds(*target_.cost_after_s) + " below that of " + rival.algorithm +
+                    " after " + shown_seconds(*target_.cheaper_than_after_s),
                 text(own) + " against " + text(its), own < its && report_.cells[other].missing == 0);
         }
     }

@@ -8,12 +8,12 @@
 #include <numeric>
 #include <random>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/quantile.hpp"
 
 namespace downwash::bench {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double tail = 0.025;  // on either side of every interval
 
@@ -99,17 +99,17 @@ Estimate risk_difference(const PairCounts& counts) {
 Estimate matched_odds_ratio(const PairCounts& counts) {
     const std::size_t differing = counts.first_only + counts.second_only;
     if (differing == 0) {
-        return {not_a_number, 0, infinite};
+        return {not_a_number, 0, infinity};
     }
     const Share share = exact_share(counts.first_only, differing);
-    const auto odds = [](double p) { return p < 1 ? p / (1 - p) : infinite; };
+    const auto odds = [](double p) { return p < 1 ? p / (1 - p) : infinity; };
     return {odds(static_cast<double>(share.hits) / static_cast<double>(differing)), odds(share.low), odds(share.high)};
 }
 
 Estimate shift_of(std::span<const double> differences) {
     const std::size_t n = differences.size();
     if (n == 0) {
-        return {not_a_number, -infinite, infinite};
+        return {not_a_number, -infinity, infinity};
     }
     std::vector<double> means;
     means.reserve(n * (n + 1) / 2);
@@ -120,7 +120,7 @@ Estimate shift_of(std::span<const double> differences) {
     }
     std::sort(means.begin(), means.end());
     const double sums = sums_in_tail(n);
-    Estimate shift{quantile_of_sorted(means, 0.5), -infinite, infinite};
+    Estimate shift{quantile_of_sorted(means, 0.5), -infinity, infinity};
     if (sums >= 0) {
         const auto beyond = static_cast<std::size_t>(sums);
         shift.low = means[beyond];

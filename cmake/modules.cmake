@@ -23,7 +23,9 @@ include(cmake/standard_library.cmake)
 add_library(downwash_options INTERFACE)
 target_compile_options(downwash_options INTERFACE
   -ffp-contract=off # the same bytes on every processor
-  -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+  -Wall -Wextra -Wpedantic -Wconversion
+  # What shadows a name of another source, or is of a type in an unnamed namespace, does no harm where each is compiled alone.
+  "$<IF:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>,$<$<CXX_COMPILER_ID:GNU>:-Wshadow=local;-Wno-subobject-linkage>,-Wshadow>"
   "$<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-heapsize=400000>" # [KiB] before it collects garbage: a tenth less time
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> # g++ 12 sees overlaps in every "text" + std::string (GCC bug 105651)
   $<$<BOOL:${DOWNWASH_WERROR}>:-Werror>)
@@ -35,6 +37,7 @@ function(downwash_optimise_little TARGET)
 endfunction()
 
 include(cmake/precompiled.cmake)
+include(cmake/unity.cmake)
 
 # downwash_module(NAME SOURCES ... USES modules... PRIVATE libraries... PRIVATE_HEADERS files... [INTERNAL | CONTAINS modules...]
 #                 [COLD])
@@ -64,6 +67,7 @@ function(downwash_module NAME)
   else()
     downwash_use_precompiled(downwash_${NAME} downwash_precompiled)
   endif()
+  downwash_unite(downwash_${NAME})
   foreach(part IN LISTS MODULE_CONTAINS)
     target_link_libraries(downwash_${NAME} PRIVATE $<BUILD_INTERFACE:downwash_${part}>)
   endforeach()

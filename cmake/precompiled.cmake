@@ -1,20 +1,20 @@
 # Headers that most sources include, compiled once for all modules with the same options: a fresh build reads them 300 times
 # otherwise. A compiler cache does better without. g++ 12 forgets that what it inlines comes from a header of the system, and
-# warns of overflows that cannot happen: such warnings are off where headers are precompiled, so sources whose warnings are
-# errors read their headers themselves.
+# warns of overflows that cannot happen: such warnings are off where headers are precompiled, so modules whose warnings are
+# errors read their headers themselves. Tests do not.
 
-if(CMAKE_CXX_COMPILER_LAUNCHER OR DOWNWASH_WERROR)
+if(CMAKE_CXX_COMPILER_LAUNCHER)
   set(precompiled OFF)
 else()
   set(precompiled ON)
 endif()
 option(DOWNWASH_PRECOMPILED "Compile headers of libraries once for all modules" ${precompiled})
 
-# downwash_precompile(NAME HEADERS ... LIBRARIES ... [COLD]): the target NAME precompiles these headers and those of the standard
+# downwash_precompile(NAME HEADERS ... LIBRARIES ... [COLD] [TESTS]): the target NAME precompiles these headers and those of the standard
 # library, for targets to use; see downwash_use_precompiled().
 function(downwash_precompile NAME)
-  cmake_parse_arguments(HEADERS "COLD" "" "HEADERS;LIBRARIES" ${ARGN})
-  if(NOT DOWNWASH_PRECOMPILED)
+  cmake_parse_arguments(HEADERS "COLD;TESTS" "" "HEADERS;LIBRARIES" ${ARGN})
+  if(NOT DOWNWASH_PRECOMPILED OR (DOWNWASH_WERROR AND NOT HEADERS_TESTS))
     return()
   endif()
   file(GENERATE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/${NAME}.cpp CONTENT "") # a target needs a source

@@ -25,9 +25,8 @@ T joint_torque(const PlantModel& nominal, const dynamics::Motion<T>& motion, T a
 /// 1, by the share of the range that is missing.
 template <class T>
 T thrust_saturation(const PlantModel& plant, const T demand_n[max_rotors]) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    T min_n(infinity);
-    T max_n(-infinity);
+    T min_n(std::numeric_limits<double>::infinity());
+    T max_n(-std::numeric_limits<double>::infinity());
     for (int i = 0; i < plant.rotor_count; ++i) {
         min_n = lane::min(min_n, demand_n[i]);
         max_n = lane::max(max_n, demand_n[i]);

@@ -114,7 +114,7 @@ void clip_by_priority(const SpaceLawModel<n>& nominal, const T tilt_n[max_rotors
             bounding[bounding_count++] = i;
         }
     }
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double unlimited = std::numeric_limits<double>::infinity();
     T low[max_rotors], high[max_rotors], turn[max_rotors];  // per share of lift
     T turn_n[max_rotors];
     for (int i = 0; i < rotors; ++i) {
@@ -138,7 +138,7 @@ void clip_by_priority(const SpaceLawModel<n>& nominal, const T tilt_n[max_rotors
         }
     }
     scale = lane::max(scale, T(0));
-    T min_lift_n(-infinity), max_lift_n(infinity);
+    T min_lift_n(-unlimited), max_lift_n(unlimited);
     for (int b = 0; b < bounding_count; ++b) {
         min_lift_n = lane::max(min_lift_n, low[b] - scale * turn[b]);
         max_lift_n = lane::min(max_lift_n, high[b] - scale * turn[b]);

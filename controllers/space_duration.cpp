@@ -2,27 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/vector3.hpp"
 #include "downwash/controllers/space_segment.hpp"
+#include "downwash/controllers/space_translation.hpp"
 #include "downwash/dynamics/plant_model.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr int axes = space_axes<max_joints>;
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// x, y and z of an array over axes.
-Vector3 translation(const double (&axis)[axes]) {
-    return {axis[space::x], axis[space::y], axis[space::z]};
-}
-
-double length(const Vector3& v) {
-    return std::sqrt(dot(v, v));
-}
+using controllers::axes;
+using controllers::length;
+using controllers::translation;
 
 /// What limits alone say of the duration of a motion between two points, whichever quintics lead from one to the other:
 /// cheap conditions that a duration has to meet.

@@ -2,29 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/vector3.hpp"
 #include "downwash/controllers/bernstein.hpp"
 #include "downwash/controllers/quintic.hpp"
+#include "downwash/controllers/space_translation.hpp"
 #include "downwash/dynamics/plant_model.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr int axes = space_axes<max_joints>;
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// x, y and z of an array over axes.
-Vector3 translation(const double (&axis)[axes]) {
-    return {axis[space::x], axis[space::y], axis[space::z]};
-}
-
-double length(const Vector3& v) {
-    return std::sqrt(dot(v, v));
-}
-
+using controllers::axes;
 using controllers::Bernstein;
+using controllers::length;
+using controllers::translation;
 
 /// Beyond a limit by no more than rounding.
 constexpr double kept = 1 + 1e-9;

@@ -11,7 +11,7 @@ namespace {
 
 using dynamics::LaneVector;
 
-LaneVector<double> unit_vector_of(const Vector3& v) {
+LaneVector<double> direction_of(const Vector3& v) {
     const double inverse = 1 / std::sqrt(dot(v, v));
     return {inverse * v[0], inverse * v[1], inverse * v[2]};
 }
@@ -68,7 +68,7 @@ SpaceSlipstreams space_slipstreams_of(const SpacePlant& plant, double rotor_radi
     const int rotors = static_cast<int>(plant.rotors.size());
     const auto rotor = [&](int number) -> const SpaceRotor& { return plant.rotors[static_cast<std::size_t>(number)]; };
     for (int i = 0; i < rotors; ++i) {
-        const LaneVector<double> axis = unit_vector_of(rotor(i).axis);
+        const LaneVector<double> axis = direction_of(rotor(i).axis);
         // The axis that is farther from the rotor's: x for one that is upright.
         const LaneVector<double> some =
             std::abs(axis.x) < 0.9 ? LaneVector<double>{1, 0, 0} : LaneVector<double>{0, 1, 0};

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/judge/goals.hpp"
 #include "downwash/judge/reference.hpp"
 
 namespace downwash::judge {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Greatest difference of coordinates that should be the same; files hold all digits.
 constexpr double rounding = 1e-9;
 

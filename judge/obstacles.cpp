@@ -1,18 +1,14 @@
 #include "downwash/judge/obstacles.hpp"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/judge/placement.hpp"
 #include "downwash/judge/solids.hpp"
 
 namespace downwash::judge {
-namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
+namespace {}  // namespace
 
 struct Obstacles::Solids {
     PlaneOfMotion plane;

@@ -11,15 +11,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/judge/placement.hpp"
 
 namespace downwash::judge {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double gjk_tolerance = 1e-12;
 /// A distance that is proven up to this is not asked for again [m].
 constexpr double trusted_m = 1e-6;

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/judge/placement.hpp"
 #include "downwash/judge/solids.hpp"
 #include "downwash/judge/space_surroundings.hpp"
@@ -16,8 +17,6 @@ namespace downwash::judge {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Pose pose_of(const BodyFrame& frame) {
     Pose pose = moved(frame.origin_m);

@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+
+#include "downwash/base/infinity.hpp"
 
 namespace downwash::judge {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Lift along b3 and torque per newton that acts. @param ratio K: the drag torque has none
 Eigen::Vector4d column_of(const FlyingRotor& rotor, double ratio) {

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <variant>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/judge/placement.hpp"
 
 namespace downwash::judge {
@@ -17,7 +17,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t max_columns = 4'000'000;
 /// A part over more columns is wide.
 constexpr std::size_t max_columns_of_part = 256;

@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "downwash/base/text.hpp"
+#include "downwash/problems/number_text.hpp"
 #include "downwash/scene/mesh_remarks.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
 
@@ -27,9 +28,7 @@ constexpr double aerodynamic_reach_radii = 4;
 constexpr double map_distance_m = 1000;
 constexpr double quarter_turn_rad = 1.5707963267948966;
 
-std::string rounded(double value) {
-    return to_text(value, 4);
-}
+using problems::rounded;
 
 std::string text_of(const Vector3& v, int digits) {
     return "[" + joined(v, ", ", [digits](double x) { return to_text(x, digits); }) + "]";

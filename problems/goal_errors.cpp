@@ -11,15 +11,14 @@
 #include "downwash/controllers/control_law.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/goal_kinds.hpp"
+#include "downwash/problems/number_text.hpp"
 #include "downwash/problems/touch_places.hpp"
 #include "downwash/simulation/contact_goal.hpp"
 
 namespace downwash {
 namespace {
 
-std::string rounded(double value) {
-    return to_text(value, 4);
-}
+using problems::rounded;
 
 constexpr std::string_view key_of_return = "goal.return_to";
 
@@ -191,7 +190,7 @@ std::vector<KeyError> touches_that_settle_late(const ProblemCheck& check) {
                                      " s; raise the gains of the position"}};
 }
 
-const Check<ProblemCheck> checks[] = {
+const Check<ProblemCheck> checks_of_goals[] = {
     {{"goal"}, too_many_goals},
     {{"goal"}, unclear_goals},
     {{"goal", "robot.controller"}, holds_beyond_longest_plan},
@@ -205,7 +204,7 @@ const Check<ProblemCheck> checks[] = {
 }  // namespace
 
 std::span<const Check<ProblemCheck>> goal_checks() {
-    return checks;
+    return checks_of_goals;
 }
 
 }  // namespace downwash

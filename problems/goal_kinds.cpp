@@ -14,7 +14,7 @@
 namespace downwash {
 namespace {
 
-using Rows = std::vector<Parameter<Goal>>;
+using GoalRows = std::vector<Parameter<Goal>>;
 using Errors = std::vector<KeyError>;
 
 /// The rows of one kind.
@@ -22,9 +22,9 @@ template <class Kind>
 class KindRows {
  public:
     /// @param path of what has the keys, with a dot behind it; empty: they stand by themselves
-    KindRows(Rows& rows, std::string path) : rows_(rows), path_(std::move(path)) {}
+    KindRows(GoalRows& rows, std::string path) : rows_(rows), path_(std::move(path)) {}
     /// Rows below the kind's group of keys, which comes first.
-    KindRows(Rows& rows, std::string_view name, std::string_view description)
+    KindRows(GoalRows& rows, std::string_view name, std::string_view description)
         : KindRows(rows, std::string(name) + ".") {
         add(parameters::alternative<Kind, Goal>(
             name, description, [](auto& goal) -> auto& { return goal.kind; }));
@@ -73,7 +73,7 @@ class KindRows {
     }
 
  private:
-    Rows& rows_;
+    GoalRows& rows_;
     std::string path_;
 };
 
@@ -92,7 +92,7 @@ void add_pose(KindRows<ConfigurationGoal> rows) {
     rows.add(rows.size("tolerance_deg", "deviation of the arm that is near enough", 180, &G::tolerance_rad));
 }
 
-void add_keys(Rows& rows, const ConfigurationGoal* kind, bool /*is_only*/) {
+void add_keys(GoalRows& rows, const ConfigurationGoal* kind, bool /*is_only*/) {
     add_pose({rows, name(kind), "the vehicle and its arm"});
 }
 
@@ -147,7 +147,7 @@ constexpr std::string_view name(const EndEffectorGoal* /*kind*/) {
     return "end_effector";
 }
 
-void add_keys(Rows& all, const EndEffectorGoal* kind, bool /*is_only*/) {
+void add_keys(GoalRows& all, const EndEffectorGoal* kind, bool /*is_only*/) {
     using G = EndEffectorGoal;
     KindRows<G> rows(all, name(kind), "the end effector at a point");
     rows.add(rows.position("x_m", "along the plane", &G::x_m).is_required());
@@ -220,7 +220,7 @@ constexpr std::string_view name(const ContactGoal* /*kind*/) {
     return "contact";
 }
 
-void add_keys(Rows& all, const ContactGoal* kind, bool is_only) {
+void add_keys(GoalRows& all, const ContactGoal* kind, bool is_only) {
     if (!is_only) {
         return;
     }
@@ -261,20 +261,20 @@ Errors out_of_reach(const ContactGoal& /*contact*/, const Goal& /*goal*/, const 
 }
 
 template <class... Kinds>
-void add_all(Rows& rows, bool is_only, const std::variant<Kinds...>* /*kind*/) {
+void add_all(GoalRows& rows, bool is_only, const std::variant<Kinds...>* /*kind*/) {
     (add_keys(rows, static_cast<const Kinds*>(nullptr), is_only), ...);
 }
 
 }  // namespace
 
 std::vector<Parameter<Goal>> goal_kind_rows(bool is_only) {
-    Rows rows;
+    GoalRows rows;
     add_all(rows, is_only, static_cast<const GoalKind*>(nullptr));
     return rows;
 }
 
 std::vector<Parameter<Goal>> configuration_rows() {
-    Rows rows;
+    GoalRows rows;
     add_pose({rows, ""});
     return rows;
 }

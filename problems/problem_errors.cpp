@@ -14,6 +14,7 @@
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/goal_errors.hpp"
 #include "downwash/problems/goal_kinds.hpp"
+#include "downwash/problems/number_text.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/problem_model.hpp"
@@ -28,9 +29,7 @@
 namespace downwash {
 namespace {
 
-std::string rounded(double value) {
-    return to_text(value, 4);
-}
+using problems::rounded;
 
 std::vector<KeyError> reversed_bounds(const Problem& p) {
     std::vector<KeyError> errors;

@@ -26,7 +26,7 @@ namespace {
 constexpr double thin_gain_db = 2;
 constexpr double thin_phase_deg = 10;
 
-std::string rounded(double value) {
+std::string shortened(double value) {
     return to_text(value, 3);
 }
 
@@ -35,8 +35,8 @@ constexpr const char* margins_remedy =
 
 std::string thin_loop_text(LoopInput input, const LoopMargins& margins, const std::string& where) {
     return "makes a hover in free air nearly unstable" + where + ": the loop of " + std::string(name_of(input)) +
-           " has margins of " + rounded(margins.gain_margin_db) + " dB and " +
-           rounded(margins.phase_margin_rad * degrees_per_radian) + " deg" + margins_remedy;
+           " has margins of " + shortened(margins.gain_margin_db) + " dB and " +
+           shortened(margins.phase_margin_rad * degrees_per_radian) + " deg" + margins_remedy;
 }
 
 std::string unstable_text(const std::string& where) {
@@ -47,7 +47,7 @@ std::string unstable_text(const std::string& where) {
 std::vector<KeyError> thin_margins(const Robot& robot) {
     for (const double arm_rad : examined_arm_angles_rad(robot.arm)) {
         std::string where = " with the arm at ";
-        where.append(rounded(arm_rad * degrees_per_radian)).append(" deg");
+        where.append(shortened(arm_rad * degrees_per_radian)).append(" deg");
         try {
             const auto loops = loop_margins(robot, arm_rad);
             for (const LoopInput input : all_loop_inputs) {
@@ -93,8 +93,9 @@ std::string rotors_text(const OverlappingDiscs& discs) {
 std::vector<KeyError> overlapping_discs(const Robot& robot) {
     for (const OverlappingDiscs& discs : overlapping_discs_of(robot.rotors)) {
         if (discs.are_level) {
-            return {{"rotors.positions_m", rotors_text(discs) + " " + rounded(discs.apart_m) +
-                                               " m apart, less than two radii, " + rounded(2 * robot.rotors.radius_m) +
+            return {{"rotors.positions_m", rotors_text(discs) + " " + shortened(discs.apart_m) +
+                                               " m apart, less than two radii, " +
+                                               shortened(2 * robot.rotors.radius_m) +
                                                " m: their discs overlap; move them apart, or give the radius "
                                                "of one rotor in rotors.radius_m"}};
         }
@@ -128,10 +129,10 @@ std::vector<KeyError> unusual_thrust(const Robot& robot) {
         return {};
     }
     return {{"rotors.max_thrust_n", "is " + to_text(robot.rotors.max_thrust_n) + ", and all rotors lift " +
-                                        rounded(times) +
+                                        shortened(times) +
                                         " times the weight: expected newtons of one rotor; if these are gram-force, as "
                                         "in data sheets, it is " +
-                                        rounded(robot.rotors.max_thrust_n * standard_gravity_m_s2 / 1000) + " N"}};
+                                        shortened(robot.rotors.max_thrust_n * standard_gravity_m_s2 / 1000) + " N"}};
 }
 
 /// All rotors at the same place along x have the same thrust, which is linear in x.
@@ -209,7 +210,7 @@ std::vector<KeyError> unusual_power(const Robot& robot) {
         return {};
     }
     return {{"rotors.power_coefficient_w_n1p5",
-             "is " + rounded(times) + " times that of an ideal rotor of this radius, " + rounded(ideal) +
+             "is " + shortened(times) + " times that of an ideal rotor of this radius, " + shortened(ideal) +
                  ": usual are 1.2 to 3 times; energies and plans for little energy are off by as much"}};
 }
 
@@ -269,11 +270,11 @@ std::vector<KeyError> thrust_beyond_rotors(const Problem& problem) {
         return {};
     }
     return {{"motion.max_thrust_ratio", "is " + to_text(*ratio) + ", and the rotors give " +
-                                            rounded(greatest_n / weight_n) + " times the weight at most (" +
-                                            rounded(greatest_n) + " N of " + rounded(weight_n) +
+                                            shortened(greatest_n / weight_n) + " times the weight at most (" +
+                                            shortened(greatest_n) + " N of " + shortened(weight_n) +
                                             " N): flights cannot follow references that ask for more; expected "
                                             "at most " +
-                                            rounded(greatest_n / weight_n)}};
+                                            shortened(greatest_n / weight_n)}};
 }
 
 /// Numbers of a file that are likely not what they should be.

@@ -13,14 +13,13 @@
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/parameter_table.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/problems/number_text.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 
 namespace downwash {
 namespace {
 
-std::string rounded(double value) {
-    return to_text(value, 4);
-}
+using problems::rounded;
 
 bool is_whole(double value) {
     return std::abs(value - std::round(value)) < 1e-9;

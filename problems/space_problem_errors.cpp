@@ -8,6 +8,7 @@
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/problems/number_text.hpp"
 #include "downwash/problems/shared_checks.hpp"
 #include "downwash/problems/space_goal_parameters.hpp"
 #include "downwash/problems/space_problem.hpp"
@@ -25,9 +26,7 @@ using Errors = std::vector<KeyError>;
 
 constexpr std::array<const char*, 3> axis_names{"x_m", "y_m", "z_m"};
 
-std::string rounded(double value) {
-    return to_text(value, 4);
-}
+using problems::rounded;
 
 double length_of(const Vector3& v) {
     return std::sqrt(dot(v, v));

@@ -12,13 +12,13 @@
 namespace downwash::problems {
 namespace {
 
-constexpr double tolerance = 1e-9;  // of numbers that should be equal
+constexpr double tick_tolerance = 1e-9;  // of numbers that should be equal
 
 /// The control tick at which a knot stands; nothing when it stands between two.
 std::optional<std::int64_t> tick_of(double t_s, double tick_s) {
     const double ticks = std::round(t_s / tick_s);
     if (!(ticks >= 0 && ticks <= static_cast<double>(max_plan_ticks)) ||
-        std::abs(ticks * tick_s - t_s) > tolerance * std::max(t_s, tick_s)) {
+        std::abs(ticks * tick_s - t_s) > tick_tolerance * std::max(t_s, tick_s)) {
         return std::nullopt;
     }
     return static_cast<std::int64_t>(ticks);

@@ -40,7 +40,7 @@ std::string text_at(const nlohmann::json& json, const char* pointer) {
 }
 
 /// What solution.json says of itself and of the files beside it.
-struct Claims {
+struct RunClaims {
     bool has_plan = false;
     ProblemReference problem;
     FileDigests files;  ///< empty in solutions of former versions
@@ -48,7 +48,7 @@ struct Claims {
 
 /// @param run a RunRecord or SpaceRunRecord
 template <class Record>
-Claims take_solution(const fs::path& file, Record& run) {
+RunClaims take_solution(const fs::path& file, Record& run) {
     using Json = nlohmann::json;
     bool is_deep = false;
     const Json solution = Json::parse(
@@ -66,7 +66,7 @@ Claims take_solution(const fs::path& file, Record& run) {
     }
     run.status = text_at(solution, "/status");
     run.outcome = text_at(solution, "/execution/outcome");
-    Claims claims;
+    RunClaims claims;
     const auto plan = solution.find("plan");
     claims.has_plan = plan != solution.end() && !plan->is_null();
     claims.problem = {text_at(solution, "/problem/name"), text_at(solution, "/problem/file"),
@@ -100,7 +100,7 @@ void check_file(const fs::path& file, const std::string& content, const FileDige
 
 /// The same for the problem in effective.yaml.
 template <class AnyProblem>
-void check_problem(const fs::path& file, const AnyProblem& problem, const Claims& claims) {
+void check_problem(const fs::path& file, const AnyProblem& problem, const RunClaims& claims) {
     check_digest(file, problem_sha256(problem), claims.problem.sha256);
 }
 
@@ -174,14 +174,14 @@ std::vector<std::string> flight_columns(const SpaceRobot& robot) {
 
 /// Reads solution.json and effective.yaml. @param read_model reads the latter
 template <class Record, class Read>
-Claims read_head(const fs::path& folder, Record& run, const Read& read_model) {
+RunClaims read_head(const fs::path& folder, Record& run, const Read& read_model) {
     std::error_code ignored;
     if (!fs::is_directory(folder, ignored)) {
         report(folder, "there is no such folder; expected one that `downwash solve` wrote");
     }
     const fs::path solution = folder / solution_name;
     run.solution_text = text_of(solution, max_solution_bytes);
-    Claims claims = take_solution(solution, run);
+    RunClaims claims = take_solution(solution, run);
     const fs::path problem = folder / "effective.yaml";
     run.problem_text = text_of(problem);
     run.problem = read_model(problem);
@@ -201,7 +201,7 @@ void check_flight(const fs::path& file, const NumberTable& flight) {
 }
 
 /// Reads trajectory.csv. @param columns that it has to have
-NumberTable read_flight(const fs::path& folder, const std::vector<std::string>& columns, const Claims& claims) {
+NumberTable read_flight(const fs::path& folder, const std::vector<std::string>& columns, const RunClaims& claims) {
     const fs::path file = folder / "trajectory.csv";
     const std::string text = text_of(file);
     NumberTable flight = read_number_table(text, file.string(), columns);
@@ -244,7 +244,7 @@ std::vector<std::pair<std::string, std::string>> run_files(const Problem& proble
 
 RunRecord read_run(const fs::path& folder) {
     RunRecord run;
-    const Claims claims = read_head(folder, run, [](const fs::path& file) {
+    const RunClaims claims = read_head(folder, run, [](const fs::path& file) {
         if (is_space_problem_file(file)) {
             report(file,
                    "this is a run in space, which pages, pictures and exports do not show yet: its trajectory.csv "
@@ -293,7 +293,7 @@ std::vector<std::pair<std::string, std::string>> run_files(const SpaceProblem& p
 
 SpaceRunRecord read_space_run(const fs::path& folder) {
     SpaceRunRecord run;
-    const Claims claims = read_head(folder, run, [](const fs::path& file) { return read_space_problem(file); });
+    const RunClaims claims = read_head(folder, run, [](const fs::path& file) { return read_space_problem(file); });
     if (claims.has_plan) {
         run.plan = read_solution((folder / solution_name).string(), run.problem).plan;
     }
@@ -310,7 +310,7 @@ ProblemReference problem_of_solution(const fs::path& file) {
 void require_whole_run(const fs::path& folder) {
     RunRecord run;
     run.solution_text = text_of(folder / solution_name);
-    const Claims claims = take_solution(folder / solution_name, run);
+    const RunClaims claims = take_solution(folder / solution_name, run);
     std::error_code ignored;
     for (const char* name : {"trajectory.csv", "tree.csv"}) {
         if (const fs::path file = folder / name; fs::exists(file, ignored)) {

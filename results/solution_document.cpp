@@ -9,7 +9,7 @@
 namespace downwash::problems {
 namespace {
 
-constexpr int deepest_nesting = 32;
+constexpr int deepest_value = 32;
 
 [[noreturn]] void throw_at(const std::string& path, TextPlace place, const std::string& message) {
     throw ProblemFileError({{path, place.line, place.column, message}});
@@ -38,7 +38,7 @@ Json parse(const std::string& path, const std::string& text) {
     bool is_deep = false;
     try {
         Json document = Json::parse(text, [&is_deep](int depth, Json::parse_event_t, Json&) {
-            is_deep = is_deep || depth > deepest_nesting;
+            is_deep = is_deep || depth > deepest_value;
             return !is_deep;
         });
         if (!is_deep) {

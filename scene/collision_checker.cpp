@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/convex.hpp"
@@ -20,7 +20,6 @@
 namespace downwash {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t arm_frame = 1;
 
 bool is_finite(const PlanarPose& pose) {

@@ -1,14 +1,12 @@
 #include <algorithm>
-#include <limits>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/scene/collision_checker.hpp"
 #include "downwash/scene/convex.hpp"
 #include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A disc touches what is nearer than this.
 constexpr double touching_m = 1e-6;

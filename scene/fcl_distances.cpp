@@ -14,7 +14,6 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
-#include <limits>
 #include <mutex>
 #include <numeric>
 #include <optional>
@@ -22,12 +21,12 @@
 #include <utility>
 #include <vector>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/scene/scene_solids.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double gjk_tolerance = 1e-10;
 /// A distance that is proven up to this is not asked for again [m].
 constexpr double trusted_m = 1e-6;

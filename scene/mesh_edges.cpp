@@ -9,7 +9,7 @@ namespace downwash {
 
 namespace {
 
-constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
 /// Equal for equal coordinates: zero has two signs.
 std::uint64_t hash_of(const Vector3& place) {
@@ -26,11 +26,11 @@ std::uint64_t hash_of(const Vector3& place) {
 std::vector<std::uint32_t> first_corners(const std::vector<Vector3>& vertices) {
     // Open addressing: the first vertex of every place stands at its hash, or behind others.
     const std::size_t mask = std::bit_ceil(2 * vertices.size() + 1) - 1;
-    std::vector<std::uint32_t> table(mask + 1, nobody);
+    std::vector<std::uint32_t> table(mask + 1, no_vertex);
     std::vector<std::uint32_t> first(vertices.size());
     for (std::uint32_t i = 0; i < vertices.size(); ++i) {
         std::size_t at = hash_of(vertices[i]) & mask;
-        while (table[at] != nobody && vertices[table[at]] != vertices[i]) {
+        while (table[at] != no_vertex && vertices[table[at]] != vertices[i]) {
             at = (at + 1) & mask;
         }
         table[at] = std::min(table[at], i);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "downwash/scene/convex.hpp"
@@ -12,7 +13,7 @@
 namespace downwash {
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
+using std::numbers::pi;
 
 /// Joint angles between limits.
 struct JointBox {

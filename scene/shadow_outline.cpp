@@ -10,7 +10,7 @@ namespace downwash {
 namespace {
 
 constexpr double negligible_m = 1e-9;
-constexpr double negligible_tilt = 1e-9;
+constexpr double negligible_part = 1e-9;
 
 bool are_close(double ax, double ay, double bx, double by) {
     return std::abs(ax - bx) < negligible_m && std::abs(ay - by) < negligible_m;
@@ -46,7 +46,7 @@ void set_slope(ShadowOutline& outline, const Matrix3& r) {
     for (const std::size_t axis : {1U, 2U}) {
         normal = level_part(axis) < level_part(normal) ? axis : normal;
     }
-    const std::size_t chosen = level_part(normal) > negligible_tilt ? normal : (normal + 1) % 3;
+    const std::size_t chosen = level_part(normal) > negligible_part ? normal : (normal + 1) % 3;
     outline.slope_x = r[0][chosen] / level_part(chosen);
     outline.slope_y = r[1][chosen] / level_part(chosen);
 }
@@ -93,7 +93,7 @@ ShadowOutline outline_of(const Cylinder& cylinder, const Vector3& center_m, cons
     const double x = center_m[0];
     const double y = center_m[1];
     const double r = cylinder.radius_m;
-    if (level < negligible_tilt) {
+    if (level < negligible_part) {
         outline.ellipses.push_back({x, y, 1, 0, r, r, true, true});
         return outline;
     }
@@ -111,7 +111,7 @@ ShadowOutline outline_of(const Cylinder& cylinder, const Vector3& center_m, cons
     for (const double end : {-1.0, 1.0}) {
         const double px = x + end * half_x;
         const double py = y + end * half_y;
-        if (std::abs(axis[2]) < negligible_tilt) {
+        if (std::abs(axis[2]) < negligible_part) {
             add(outline, {px - r * uy, py + r * ux, px + r * uy, py - r * ux, true, true});
         } else {
             outline.ellipses.push_back(

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/scene/fcl_distances.hpp"
 #include "downwash/scene/robot_solids.hpp"
@@ -18,8 +19,6 @@
 
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void inspect(const std::vector<SpaceBodyShape>& bodies, const std::string& owner, std::vector<KeyError>& errors) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {

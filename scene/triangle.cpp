@@ -2,18 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "downwash/base/infinity.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 /// Sine of an angle too small to matter: over 100 m it moves a surface by 1e-10 m.
-constexpr double negligible_tilt = 1e-12;
+constexpr double negligible_slope = 1e-12;
 
 bool is_upright(const Vector3& normal) {
-    return !(std::abs(normal[2]) > negligible_tilt * std::sqrt(dot(normal, normal)));
+    return !(std::abs(normal[2]) > negligible_slope * std::sqrt(dot(normal, normal)));
 }
 
 /// Height of the triangle's plane, kept between the lowest and the highest corner. @pre not upright
@@ -74,7 +73,7 @@ bool has_shadow(const Triangle& triangle) noexcept {
 bool is_level(const Triangle& triangle) noexcept {
     const Vector3 normal = normal_of(triangle);
     const double tilt = std::max(std::abs(normal[0]), std::abs(normal[1]));
-    return tilt <= negligible_tilt * std::abs(normal[2]);
+    return tilt <= negligible_slope * std::abs(normal[2]);
 }
 
 Interval vertical_extent(const Triangle& triangle, double x_m, double y_m) noexcept {

@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/scene/scene.hpp"
 #include "downwash/scene/scene_solids.hpp"
 #include "downwash/scene/seen_from_above.hpp"
 
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr Interval whole_line{-infinity, infinity};
 
@@ -135,9 +133,9 @@ Interval shadow(double x_world, double y_world, double dx, double dy, const Cyli
 /// Faces that turn up, or down, by more than a negligible tilt.
 void add_box_faces(const Vector3& size_m, const Vector3& center_m, const Matrix3& r, bool is_from_above,
                    std::pmr::vector<Scene::Face>& faces) {
-    constexpr double negligible_tilt = 1e-12;
+    constexpr double negligible_share = 1e-12;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (!(std::abs(r[2][axis]) > negligible_tilt)) {
+        if (!(std::abs(r[2][axis]) > negligible_share)) {
             continue;
         }
         const double out = 0.5 * size_m[axis] * ((r[2][axis] > 0) == is_from_above ? 1 : -1);

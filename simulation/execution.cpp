@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/numbers.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 #include "downwash/simulation/between_ticks.hpp"
@@ -335,7 +336,6 @@ std::string_view name_of(Outcome outcome) {
 }
 
 FlightRules rules_of_execution() {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     FlightRules rules;
     rules.margin_m = 0;
     rules.bounds = {-infinity, infinity, -infinity, infinity};

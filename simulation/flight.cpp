@@ -14,7 +14,7 @@ namespace {
 
 using Given = controllers::Actuation<double>;
 
-constexpr std::int64_t ticks_between_questions = 4096;
+constexpr std::int64_t ticks_between_looks = 4096;
 
 /// The rules, cheapest first.
 Rejection broken_rule(const FlightModel& model, const AeroMap* map, const FlightRules& rules,
@@ -44,7 +44,7 @@ SegmentFlight fly_with(const FlightModel& model, const AeroMap* map, const Fligh
     const auto after = [&](const FlightState& before, const ReferencePoint&, const Given& given,
                            const FlightState& next, const ReferencePoint& next_reference) {
         ++flight.ticks;
-        if (flight.ticks % ticks_between_questions == 0 && rules.is_over && rules.is_over()) {
+        if (flight.ticks % ticks_between_looks == 0 && rules.is_over && rules.is_over()) {
             return Rejection::interrupted;
         }
         simulation::add_tick(flight, model.tick().plant, before, next);

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
@@ -76,7 +76,6 @@ void find_hover_share(const Robot& robot, RobotFacts& facts) {
 }
 
 std::optional<LeastMargins> least_margins(const Robot& robot) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
     LeastMargins least{infinity, {}, 0, infinity, {}, 0};
     for (const double arm_rad : examined_arm_angles_rad(robot.arm)) {
         try {

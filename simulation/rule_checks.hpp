@@ -26,14 +26,14 @@ struct RuleLimits {
 
 /// The limits of a flight with this arm. An arm that does not move has no limits to leave: its joint only holds it.
 inline RuleLimits rule_limits(const FlightRules& rules, const ArmParameters& arm) noexcept {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double unlimited = std::numeric_limits<double>::infinity();
     const bool has_limits = arm.is_limited && arm.lower_limit_rad < arm.upper_limit_rad;
     return {rules.bounds.x_low_m,
             rules.bounds.x_high_m,
             rules.bounds.z_low_m,
             rules.bounds.z_high_m,
-            has_limits ? arm.lower_limit_rad : -infinity,
-            has_limits ? arm.upper_limit_rad : infinity,
+            has_limits ? arm.lower_limit_rad : -unlimited,
+            has_limits ? arm.upper_limit_rad : unlimited,
             rules.max_tracking_error_m,
             rules.max_arm_error_rad,
             rules.max_saturation,

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/simulation/flight_rules.hpp"
 #include "downwash/simulation/goal.hpp"
@@ -19,7 +19,6 @@ namespace {
 
 using simulation::SpaceLoop;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Few: among thousands of obstacles a tick takes milliseconds.
 constexpr std::int64_t ticks_between_questions = 8;
 

@@ -4,16 +4,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/effects/effect_table.hpp"
 
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Where the largest change is bounded from samples: distances q^i * nearest, up to `farthest`.
 constexpr double nearest = 0.01;

@@ -2,16 +2,14 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/effects/effect_table.hpp"
 
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Parameters = std::array<double, max_model_parameters>;
 

@@ -6,17 +6,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <span>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// A free parameter: its place in the model and the range it is sought in.
 struct Free {

@@ -1,15 +1,13 @@
 #include "downwash/fitting/effect_scatter.hpp"
 
 #include <cmath>
-#include <limits>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/fitting/effect_comparison.hpp"
 
 namespace downwash {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// @param points all of a surface
 RelativeScatter scatter_between(double z_low, double z_high, const std::vector<Measurement>& points,

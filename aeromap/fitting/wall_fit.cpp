@@ -11,7 +11,7 @@
 namespace downwash {
 namespace {
 
-using Points = std::vector<WallMeasurement>;
+using WallPoints = std::vector<WallMeasurement>;
 using Component = double WallMeasurement::*;
 
 /// The range of aero.wall.decay_radii in a problem file.
@@ -22,7 +22,7 @@ double fading(const WallMeasurement& point, double decay_radii) {
 }
 
 /// The share that fits best with a given decay: linear least squares. 0 where nothing is left of the wall's effect.
-WallShare share_of(const Points& points, Component component, double decay_radii) {
+WallShare share_of(const WallPoints& points, Component component, double decay_radii) {
     double shapes = 0;
     double products = 0;
     for (const WallMeasurement& point : points) {
@@ -47,7 +47,7 @@ WallShare share_of(const Points& points, Component component, double decay_radii
     return share;
 }
 
-WallShares fit_with_decay(const Points& points, double decay_radii) {
+WallShares fit_with_decay(const WallPoints& points, double decay_radii) {
     WallShares fit;
     fit.points = points.size();
     fit.force = share_of(points, &WallMeasurement::force_over_thrust, decay_radii);
@@ -56,7 +56,7 @@ WallShares fit_with_decay(const Points& points, double decay_radii) {
     return fit;
 }
 
-LeastPlace best_decay_radii(const Points& points) {
+LeastPlace best_decay_radii(const WallPoints& points) {
     const auto rmse = [&](double decay_radii) {
         return share_of(points, &WallMeasurement::moment_over_thrust_radius, decay_radii).rmse;
     };
@@ -84,7 +84,7 @@ WallFit fit_walls(const std::vector<WallMeasurement>& measurements) {
             "distances in rotor radii");
     }
     for (const std::string& facility : facilities) {
-        Points own;
+        WallPoints own;
         std::ranges::copy_if(measurements, std::back_inserter(own),
                              [&](const WallMeasurement& point) { return point.facility == facility; });
         if (facilities.size() > 1) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/base/quantile.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
@@ -12,8 +13,6 @@
 
 namespace downwash::bench {
 namespace {
-
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// The runs of one condition on one problem, by seed.
 using Runs = std::map<std::uint32_t, const AwarenessRow*>;
@@ -73,8 +72,8 @@ AwarenessCell cell_of(const RowIndex& index, const AwarenessFigures& figures, co
         const auto best = figures.best.find({problem, condition.robot});
         for (const auto& [seed, row] : index.of(condition, problem)) {
             ++cell.attempted;
-            candidates_s.push_back(row->first_candidate_s.value_or(infinite));
-            certificates_s.push_back(row->first_certified_s.value_or(infinite));
+            candidates_s.push_back(row->first_candidate_s.value_or(infinity));
+            certificates_s.push_back(row->first_certified_s.value_or(infinity));
             walls_s.push_back(row->wall_s);
             cell.discarded += row->discarded;
             if (!row->has_plan()) {
@@ -143,9 +142,9 @@ std::optional<double> figure_of(Metric metric, const AwarenessRow& row) {
                        ? std::optional(row.executed->min_clearance_m)
                        : std::nullopt;
         case Metric::candidate_time:
-            return row.first_candidate_s.value_or(infinite);
+            return row.first_candidate_s.value_or(infinity);
         case Metric::certificate_time:
-            return row.first_certified_s.value_or(infinite);
+            return row.first_certified_s.value_or(infinity);
         default:
             return row.has_plan() && row.fresh ? std::optional(fresh_share(row)) : std::nullopt;
     }

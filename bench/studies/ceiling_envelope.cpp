@@ -11,8 +11,8 @@
 namespace downwash::studies {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
-constexpr double max_factor = 2;
+constexpr double one_degree = std::numbers::pi / 180;
+constexpr double greatest_factor = 2;
 constexpr double far_m = 10;
 
 /// What the thesis reads off at one pitch and distance.
@@ -44,14 +44,14 @@ CurveFigure difference_figure(const SurfaceEffect& ceiling, const RotorPair& pai
     figure.y_label = "K front / K rear - 1 [%]";
     figure.x_range = AxisRange{0, 0.6};
     figure.y_range = AxisRange{0, 40};
-    const double cap_m = EffectCurve(ceiling, max_factor).cap_distance() * pair.radius_m;
+    const double cap_m = EffectCurve(ceiling, greatest_factor).cap_distance() * pair.radius_m;
     for (const double pitch_deg : {1.0, 3.0, 5.0, 10.0, 15.0}) {
         Curve curve{fmt::format("{:.0f} deg", pitch_deg), {}};
         const double capped_m =
-            cap_m + pair.arm_m * std::sin(pitch_deg * degree);  // the front rotor's K is no formula's any more
+            cap_m + pair.arm_m * std::sin(pitch_deg * one_degree);  // the front rotor's K is no formula's any more
         for (int i = 1; i <= 300; ++i) {
             const double distance_m = 0.002 * i;
-            const double share = difference_between_rotors(ceiling, pair, pitch_deg * degree, distance_m);
+            const double share = difference_between_rotors(ceiling, pair, pitch_deg * one_degree, distance_m);
             curve.points.push_back({distance_m, distance_m > capped_m && share < 0.5 ? 100 * share : std::nan("")});
         }
         figure.curves.push_back(std::move(curve));
@@ -76,14 +76,14 @@ CurveFigure envelope_figure(const SurfaceEffect& ceiling, const RotorPair& pair)
         Curve curve{fmt::format("{:.0f} %", 100 * most), {}};
         for (int i = 1; i <= 80; ++i) {
             const double pitch_deg = 0.25 * i;
-            curve.points.push_back({pitch_deg, least_distance_m(ceiling, pair, pitch_deg * degree, most)});
+            curve.points.push_back({pitch_deg, least_distance_m(ceiling, pair, pitch_deg * one_degree, most)});
         }
         figure.curves.push_back(std::move(curve));
     }
     Curve touch{"the front disc touches", {}};
     for (int i = 0; i <= 80; ++i) {
         const double pitch_deg = 0.25 * i;
-        touch.points.push_back({pitch_deg, (pair.arm_m + pair.radius_m) * std::sin(pitch_deg * degree)});
+        touch.points.push_back({pitch_deg, (pair.arm_m + pair.radius_m) * std::sin(pitch_deg * one_degree)});
     }
     figure.curves.push_back(std::move(touch));
     return figure;
@@ -99,9 +99,9 @@ Table table_of_models(const RotorPair& pair) {
             const SurfaceEffect effect(model.model);
             std::vector<std::string> row{std::string(model.name)};
             for (const Statement& s : statements) {
-                row.push_back(percent(difference_between_rotors(effect, pair, s.pitch_deg * degree, s.distance_m)));
+                row.push_back(percent(difference_between_rotors(effect, pair, s.pitch_deg * one_degree, s.distance_m)));
             }
-            row.push_back(fmt::format("{:.3f}", least_distance_m(effect, pair, 10 * degree, 0.05)));
+            row.push_back(fmt::format("{:.3f}", least_distance_m(effect, pair, 10 * one_degree, 0.05)));
             table.rows.push_back(std::move(row));
         }
     }
@@ -116,7 +116,7 @@ double difference_between_rotors(const SurfaceEffect& ceiling, const RotorPair& 
     if (distance_m - std::abs(rise_m) <= 0) {
         return std::numeric_limits<double>::infinity();
     }
-    const EffectCurve k(ceiling, max_factor);
+    const EffectCurve k(ceiling, greatest_factor);
     return k((distance_m - rise_m) / pair.radius_m) / k((distance_m + rise_m) / pair.radius_m) - 1;
 }
 
@@ -153,7 +153,8 @@ Study ceiling_envelope() {
     };
     for (const Reading& reading : readings) {
         for (const Statement& s : statements) {
-            const double share = difference_between_rotors(ceiling, reading.pair, s.pitch_deg * degree, s.distance_m);
+            const double share =
+                difference_between_rotors(ceiling, reading.pair, s.pitch_deg * one_degree, s.distance_m);
             Finding finding;
             finding.name = fmt::format("C1: {:.0f} deg at {:.2f} m, {}", s.pitch_deg, s.distance_m, reading.name);
             finding.thesis = fmt::format("{} %", s.percent);
@@ -163,8 +164,8 @@ Study ceiling_envelope() {
         }
     }
     const RotorPair pair = readings[0].pair;
-    const double at_rule = difference_between_rotors(ceiling, pair, 10 * degree, 0.25);
-    const double least_m = least_distance_m(ceiling, pair, 10 * degree, 0.05);
+    const double at_rule = difference_between_rotors(ceiling, pair, 10 * one_degree, 0.25);
+    const double least_m = least_distance_m(ceiling, pair, 10 * one_degree, 0.05);
     study.findings.push_back({"C2: forward flight at 10 deg down to 0.25 m keeps the difference below 5 %",
                               "allowed (4.6)",
                               fmt::format("{} at 0.25 m; 5 % is reached at {:.3f} m", percent(at_rule), least_m),

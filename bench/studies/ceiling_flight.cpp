@@ -14,7 +14,7 @@
 namespace downwash::studies {
 namespace {
 
-constexpr double tick_s = 0.01;
+constexpr double ceiling_tick_s = 0.01;
 
 const EffectCurve& curve_of_ceiling() {
     static const EffectCurve curve(EffectModel::sanchez_cuevas, 2);
@@ -124,13 +124,13 @@ CeilingFlight fly(const CeilingExperiment& e) {
     std::fill(state.thrust_n, state.thrust_n + 4, weight_n / 4);
     CeilingFlight flight;
     flight.leaves_s = (e.press_m - e.start_m) / e.speed_m_s + e.contact_s;
-    const auto ticks = static_cast<std::int64_t>(std::lround((flight.leaves_s + e.after_s) / tick_s));
+    const auto ticks = static_cast<std::int64_t>(std::lround((flight.leaves_s + e.after_s) / ceiling_tick_s));
     double integral_m = 0;
     double seen_m = e.start_m;
     for (std::int64_t tick = 0; tick < ticks; ++tick) {
-        const double time_s = static_cast<double>(tick) * tick_s;
+        const double time_s = static_cast<double>(tick) * ceiling_tick_s;
         const double height_m = state.q[2] + frame_m;
-        const auto per_sample = std::max<std::int64_t>(1, std::lround(e.sample_s / tick_s));
+        const auto per_sample = std::max<std::int64_t>(1, std::lround(e.sample_s / ceiling_tick_s));
         if (tick % per_sample == 0) {
             double noise[simulation::noise_count];
             simulation::draw_noise(simulation::normal_levels(), 1, tick, noise, 1);
@@ -151,8 +151,8 @@ CeilingFlight fly(const CeilingExperiment& e) {
             acting_n = e.vehicle.mass_kg * (standard_gravity_m_s2 + acceleration_m_s2) / attitude.third.z;
             is_clipped = acting_n < 0 || acting_n > 2 * weight_n;
             if (!is_clipped) {
-                integral_m =
-                    controllers::integrate(pid.climb_ki, pid.integral_limit_m_s2, integral_m, climb_error_m_s, tick_s);
+                integral_m = controllers::integrate(pid.climb_ki, pid.integral_limit_m_s2, integral_m, climb_error_m_s,
+                                                    ceiling_tick_s);
             }
         } else {
             acting_n = controllers::altitude_thrust(model, law, seen_m, state.u[2], attitude.third.z,
@@ -178,7 +178,7 @@ CeilingFlight fly(const CeilingExperiment& e) {
         flight.reference_climb_m_s.push_back(reference.climb_m_s);
         flight.command_over_weight.push_back(sum_n / weight_n);
         flight.ceiling_factor.push_back(ceiling_factor_at(e.vehicle, e.vehicle.guard_m - height_m));
-        const auto next = dynamics::contact_tick(model, contact, state, command, tick_s, around);
+        const auto next = dynamics::contact_tick(model, contact, state, command, ceiling_tick_s, around);
         flight.max_depth_m = std::max(flight.max_depth_m, next.max_depth_m);
         state = next.state;
     }

@@ -12,7 +12,7 @@
 namespace downwash::studies {
 namespace {
 
-constexpr double tick_s = 0.01;
+constexpr double inspection_tick_s = 0.01;
 constexpr double degrees_per_rad = 180 / std::numbers::pi;
 
 using Vector = dynamics::LaneVector<double>;
@@ -58,7 +58,7 @@ LyapunovReference<double> reference_on(const Leg& leg, double after_s) {
 class Sensor {
  public:
     explicit Sensor(const CeilingInspection& mission)
-        : per_sample_(std::max<std::int64_t>(1, std::lround(mission.sample_s / tick_s))),
+        : per_sample_(std::max<std::int64_t>(1, std::lround(mission.sample_s / inspection_tick_s))),
           noise_m_(mission.position_noise_m) {}
 
     dynamics::SpaceState<double, 0> seen(const dynamics::SpaceState<double, 0>& state, std::int64_t tick) {
@@ -108,7 +108,7 @@ std::size_t first_below(const std::vector<double>& heights_m, std::size_t begin,
 
 /// What the ticks [begin, end) of a leg say of the mission.
 void judge(const Leg& leg, std::size_t begin, std::size_t end, CeilingInspectionFlight& flight) {
-    const std::size_t rest = begin + static_cast<std::size_t>(std::ceil(leg.moves_s / tick_s));
+    const std::size_t rest = begin + static_cast<std::size_t>(std::ceil(leg.moves_s / inspection_tick_s));
     for (std::size_t i = std::min(rest, end); i < end; ++i) {
         flight.max_aside_m =
             std::max(flight.max_aside_m, std::hypot(flight.x_m[i] - leg.to_m.x, flight.y_m[i] - leg.to_m.y));
@@ -124,7 +124,8 @@ void judge(const Leg& leg, std::size_t begin, std::size_t end, CeilingInspection
         const std::size_t left = first_below(flight.height_m, begin, end, below_m);
         const std::size_t asked = first_below(flight.reference_height_m, begin, end, below_m);
         flight.always_leaves = flight.always_leaves && left < end;
-        flight.delay_s = std::max(flight.delay_s, (static_cast<double>(left) - static_cast<double>(asked)) * tick_s);
+        flight.delay_s =
+            std::max(flight.delay_s, (static_cast<double>(left) - static_cast<double>(asked)) * inspection_tick_s);
     }
 }
 
@@ -150,10 +151,10 @@ CeilingInspectionFlight fly(const CeilingInspection& mission) {
     CeilingInspectionFlight flight;
     std::int64_t tick = 0;
     for (const Leg& leg : legs_of(mission)) {
-        const auto ticks = static_cast<std::int64_t>(std::lround((leg.moves_s + leg.rests_s) / tick_s));
+        const auto ticks = static_cast<std::int64_t>(std::lround((leg.moves_s + leg.rests_s) / inspection_tick_s));
         const std::size_t begin = flight.time_s.size();
         for (std::int64_t i = 0; i < ticks; ++i, ++tick) {
-            const LyapunovReference<double> frame = reference_on(leg, static_cast<double>(i) * tick_s);
+            const LyapunovReference<double> frame = reference_on(leg, static_cast<double>(i) * inspection_tick_s);
             LyapunovReference<double> centre = frame;
             centre.z.value -= frame_m;
             const dynamics::SpaceState<double, 0> seen = sensor.seen(state, tick);
@@ -166,11 +167,11 @@ CeilingInspectionFlight fly(const CeilingInspection& mission) {
             for (int rotor = 0; rotor < model.rotor_count; ++rotor) {
                 command.thrust_n[rotor] = std::clamp(command.thrust_n[rotor], 0.0, weight_n / 2);
             }
-            flight.time_s.push_back(static_cast<double>(tick) * tick_s);
+            flight.time_s.push_back(static_cast<double>(tick) * inspection_tick_s);
             flight.ceiling_factor.push_back(
                 ceiling_factor_at(mission.vehicle, -(state.q[2] + mission.vehicle.rotor_height_m)));
             record(state, frame_m, frame, demand, flight);
-            state = dynamics::contact_tick(model, contact, state, command, tick_s, around).state;
+            state = dynamics::contact_tick(model, contact, state, command, inspection_tick_s, around).state;
         }
         judge(leg, begin, flight.time_s.size(), flight);
     }

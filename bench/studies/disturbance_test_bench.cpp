@@ -70,15 +70,15 @@ Figure figure_of(const std::array<BenchFlight, 3>& flights) {
             {std::move(figure)}};
 }
 
-struct Setting {
+struct BenchSetting {
     std::string name;
     BenchExperiment base;
 };
 
-std::vector<Setting> settings() {
+std::vector<BenchSetting> bench_settings() {
     BenchExperiment base;
     base.ground = effect_on_each_rotor(EffectModel::multirotor_body, base.vehicle);
-    std::vector<Setting> all{{"(2.17) on the rotor", base}};
+    std::vector<BenchSetting> all{{"(2.17) on the rotor", base}};
     for (const EffectModel model : {EffectModel::multirotor_images, EffectModel::cheeseman_bennett, EffectModel::hayden,
                                     EffectModel::li, EffectModel::he}) {
         all.push_back({std::string(info(model).name), base});
@@ -99,7 +99,7 @@ std::vector<Setting> settings() {
 }  // namespace
 
 Study disturbance_test_bench() {
-    const std::vector<Setting> all = settings();
+    const std::vector<BenchSetting> all = bench_settings();
     Study study;
     study.name = "disturbance-test-bench";
     study.title = "A plate under one rotor of a quadrotor on a test bench (thesis 3.5)";
@@ -116,7 +116,7 @@ Study disturbance_test_bench() {
                 {"setting", "PID", "feed-forward", "observer"},
                 {}};
     std::vector<std::vector<Finding>> by_setting;
-    for (const Setting& setting : all) {
+    for (const BenchSetting& setting : all) {
         const auto flights = flights_of(setting.base);
         by_setting.push_back(findings_of(flights));
         std::vector<std::string> row{setting.name};

@@ -10,7 +10,7 @@
 namespace downwash::studies {
 namespace {
 
-constexpr double tick_s = 0.01;
+constexpr double decay_tick_s = 0.01;
 constexpr double start_m = -0.5, target_m = -0.2;  // of the rotors, from the ceiling
 }  // namespace
 
@@ -58,13 +58,13 @@ LyapunovDecay lyapunov_decay() {
             std::max(decay.sampled_excess, std::abs(controllers::lyapunov_function(errors) - ideal) / at_start);
         constexpr int small_steps = 1000;
         for (int i = 0; i < small_steps; ++i) {
-            const double h = tick_s / small_steps;
+            const double h = decay_tick_s / small_steps;
             const double half_e = e + h / 2 * (e_rate - law.z.k * e);
             const double half_rate = e_rate + h / 2 * (-law.z.k_rate * e_rate - e);
             e += h * (half_rate - law.z.k * half_e);
             e_rate += h * (-law.z.k_rate * half_rate - half_e);
         }
-        state = dynamics::space_step(model, state, command, tick_s, ceiling);
+        state = dynamics::space_step(model, state, command, decay_tick_s, ceiling);
     }
     return decay;
 }

@@ -14,7 +14,7 @@
 namespace downwash::studies {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double degree_rad = std::numbers::pi / 180;
 constexpr double max_factor = 2;
 constexpr double rate_hz = 100;
 
@@ -111,9 +111,9 @@ PlanarFlight fly(const PlanarExperiment& e) {
         flight.time_s.push_back(static_cast<double>(tick) / rate_hz);
         flight.x_m.push_back(q[0]);
         flight.z_m.push_back(q[1]);
-        flight.pitch_deg.push_back(q[2] / degree);
+        flight.pitch_deg.push_back(q[2] / degree_rad);
         // Written so that NaN is lost too.
-        if (!(std::abs(q[2]) < 60 * degree && std::abs(q[1] - height_m) < 5 && std::abs(q[0]) < 50)) {
+        if (!(std::abs(q[2]) < 60 * degree_rad && std::abs(q[1] - height_m) < 5 && std::abs(q[0]) < 50)) {
             flight.is_lost = true;
             break;
         }

@@ -27,9 +27,9 @@ class Moment : public ob::State {
 };
 
 /// Samples moments of rest at places that the sampler of the space of configurations draws.
-class Sampler : public ob::StateSampler {
+class FlightSampler : public ob::StateSampler {
  public:
-    Sampler(const ob::StateSpace* states, const ob::StateSpacePtr& places, const SearchTask& task)
+    FlightSampler(const ob::StateSpace* states, const ob::StateSpacePtr& places, const SearchTask& task)
         : ob::StateSampler(states),
           task_(task),
           place_(places),
@@ -122,7 +122,7 @@ class FlightSpace : public ob::StateSpace {
         point_of(state) = s < 0.5 ? point_of(from) : point_of(to);
     }
     ob::StateSamplerPtr allocDefaultStateSampler() const override {
-        return std::make_shared<Sampler>(this, places_, task_);
+        return std::make_shared<FlightSampler>(this, places_, task_);
     }
     ob::State* allocState() const override { return new Moment; }
     void freeState(ob::State* state) const override { delete static_cast<Moment*>(state); }
@@ -218,7 +218,7 @@ class FlightSpace : public ob::StateSpace {
     ob::StateSpacePtr places_;
 };
 
-class Validity : public ob::StateValidityChecker {
+class FlightValidity : public ob::StateValidityChecker {
  public:
     using ob::StateValidityChecker::StateValidityChecker;
     bool isValid(const ob::State* state) const override { return point_of(state).is_valid; }
@@ -260,7 +260,7 @@ const ob::StateSpacePtr& places_of(const ob::StateSpace& flights) {
 }
 
 ob::StateValidityCheckerPtr make_flight_validity(const ob::SpaceInformationPtr& information) {
-    return std::make_shared<Validity>(information);
+    return std::make_shared<FlightValidity>(information);
 }
 
 ob::OptimizationObjectivePtr make_flight_objective(const ob::SpaceInformationPtr& information) {

@@ -140,10 +140,10 @@ class StraightMotion : public ob::MotionValidator {
     QueryCounts& counts_;
 };
 
-class GoalRegion : public ob::GoalSampleableRegion {
+class SampledGoal : public ob::GoalSampleableRegion {
  public:
-    GoalRegion(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
-               unsigned int max_samples)
+    SampledGoal(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
+                unsigned int max_samples)
         : ob::GoalSampleableRegion(information), space_(space), random_(random), max_samples_(max_samples) {
         setThreshold(1e-9);  // distanceGoal is 0 inside the region
     }
@@ -231,7 +231,7 @@ ob::SpaceInformationPtr make_space_information(const SearchSpace& space, Random&
 
 ob::GoalPtr make_goal_region(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
                              unsigned int max_samples) {
-    return std::make_shared<GoalRegion>(information, space, random, max_samples);
+    return std::make_shared<SampledGoal>(information, space, random, max_samples);
 }
 
 }  // namespace downwash::planning

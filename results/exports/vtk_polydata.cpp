@@ -18,7 +18,7 @@ std::string array(std::string_view type, std::string_view name, int components, 
            std::to_string(components) + "\" format=\"ascii\">\n" + numbers + "\n</DataArray>\n";
 }
 
-void append(std::string& numbers, const Vector3& point) {
+void append_point(std::string& numbers, const Vector3& point) {
     for (const double coordinate : point) {
         numbers += to_text(coordinate) + ' ';
     }
@@ -69,7 +69,7 @@ std::string vtk_flight(const RunRecord& run, const ExportSettings&) {
         const std::vector<double>& x_m = *flight.find(x_name);
         const std::vector<double>& z_m = *flight.find(z_name);
         for (std::size_t row = 0; row < flight.rows(); ++row) {
-            append(points, run.problem.plane.to_world(x_m[row], 0, z_m[row]));
+            append_point(points, run.problem.plane.to_world(x_m[row], 0, z_m[row]));
             lines += std::to_string(count++) + ' ';
         }
     }
@@ -101,7 +101,7 @@ std::string vtk_scene(const RunRecord& run, const ExportSettings&) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         const TriangleMesh surface = surface_of(all[i]);
         for (const Vector3& vertex_m : surface.vertices_m) {
-            append(points, vertex_m);
+            append_point(points, vertex_m);
         }
         for (const auto& triangle : surface.triangles) {
             for (const std::uint32_t corner : triangle) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "../support/hard_places.hpp"
+#include "../support/repetitions.hpp"
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "scenes.hpp"
@@ -192,7 +193,7 @@ TEST_CASE("What lies behind a plate under all rotors is not felt by their images
 
 TEST_CASE("Maps of images and fountains are within 0.01 of the direct effect") {
     test::Random random(17);
-    for (int scene = 0; scene < 6; ++scene) {
+    for (int scene = 0; scene < test::repetitions(2, 6); ++scene) {
         const std::vector<Vector3> body_m = ring(scene % 2 == 0 ? 4 : 6);
         const double heading = random.uniform(-3, 3);
         AeroSettings settings = with_ground(EffectModel::multirotor_images);

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "../support/repetitions.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/judge/plan_judge.hpp"
 #include "downwash/judge/reference.hpp"
@@ -287,7 +288,9 @@ TEST_CASE("Other control laws fly as the planner says, with an observer, with a 
         ControlLaw law;
         bool observes, reads;
     };
-    for (const char* name : {"bridge_inspection", "box_girder_bay"}) {
+    const std::vector<const char*> names{"bridge_inspection", "box_girder_bay"};
+    for (int i = 0; i < test::repetitions(1, 2); ++i) {
+        const char* name = names[static_cast<std::size_t>(i)];
         Problem problem = shipped(name);
         const Plan plan = plan_of(problem, 100);
         problem.aero.ground = EffectModel::multirotor_body;

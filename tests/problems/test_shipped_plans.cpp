@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 
+#include "../support/repetitions.hpp"
 #include "../support/same_bytes.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -41,8 +42,8 @@ TEST_CASE("Twelve plans of four shipped problems end where hover is stable") {
     }
 }
 
-TEST_CASE("A thousand iterations come to the same bytes on one, three and five threads") {
-    const Problem problem = shipped("box_girder_bay", 1000);
+TEST_CASE("A search comes to the same bytes on one, three and five threads") {
+    const Problem problem = shipped("box_girder_bay", static_cast<std::uint64_t>(test::repetitions(300, 1000)));
     SolveOptions options;
     options.map = make_flight_model(problem)->make_map(problem.bounds);
     options.keep_tree = true;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "../support/random.hpp"
+#include "../support/repetitions.hpp"
 #include "../support/solved_run.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/report/obstacle_drawing.hpp"
@@ -128,7 +129,8 @@ TEST_CASE("of very many obstacles the largest have names, and goals have theirs"
     figure.points.back().points = {{95, 45}};
     figure.points.back().labels = {"goal"};
     std::vector<VisibleOutline> outlines;
-    constexpr std::size_t count = 20000, large = 7777;
+    const auto count = static_cast<std::size_t>(test::repetitions(2000, 20000));
+    const std::size_t large = count / 3;
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t row = i / 200, column = i % 200;
         const double x_m = 0.4 * static_cast<double>(column), z_m = 0.4 * static_cast<double>(row);

@@ -2,6 +2,7 @@
 #include <deque>
 #include <map>
 
+#include "../support/repetitions.hpp"
 #include "../support/short_of_memory.hpp"
 #include "hover_scenes.hpp"
 
@@ -96,7 +97,8 @@ TEST_CASE("edges fly side by side as one by one with rotor lag, a fountain, wall
     limit_arm(problem.robot, -2, 2);
     problem.aero.ground = SurfaceEffect(EffectModel::multirotor_body);
     problem.aero.wall = {0.02, 0.04, 1};
-    CHECK(rejections_of_equal_flights(problem, true, rules_of(problem), 100).count(Rejection::none) == 1);
+    CHECK(rejections_of_equal_flights(problem, true, rules_of(problem), repetitions(40, 100)).count(Rejection::none) ==
+          1);
     // So they do where clearance is measured.
     const Problem plain = cluttered_problem();
     FlightRules rules = rules_of(plain);
@@ -111,9 +113,10 @@ TEST_CASE("edges fly side by side as one by one with a cascaded PID") {
     law.rotor_lead = 1;
     law.pitch_rate_kd = 0.01;
     problem.robot.controller.law = law;
-    const auto aware = rejections_of_equal_flights(problem, true, rules_of(problem), 200);
+    const auto aware = rejections_of_equal_flights(problem, true, rules_of(problem), repetitions(60, 200));
     CHECK(aware.count(Rejection::none) == 1);
-    CHECK(rejections_of_equal_flights(problem, false, rules_of(problem), 200).count(Rejection::none) == 1);
+    CHECK(rejections_of_equal_flights(problem, false, rules_of(problem), repetitions(60, 200)).count(Rejection::none) ==
+          1);
 }
 
 TEST_CASE("edges fly side by side as one by one with an observer and a feed-forward, in a world and in none") {
@@ -128,7 +131,7 @@ TEST_CASE("edges fly side by side as one by one with an observer and a feed-forw
             }
             give_aids(problem.robot.controller.law,
                       {controllers::DisturbanceObserver{}, controllers::FeedForward{0.02, -0.03}});
-            const auto aware = rejections_of_equal_flights(problem, true, rules_of(problem), 100);
+            const auto aware = rejections_of_equal_flights(problem, true, rules_of(problem), repetitions(40, 100));
             CHECK(aware.count(Rejection::none) == 1);
         }
     }

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "../support/repetitions.hpp"
 #include "../support/single_tick.hpp"
 #include "hover_scenes.hpp"
 
@@ -298,7 +299,7 @@ TEST_CASE("flights grow where hover is called unstable and decay where it is cal
           equipped(cluttered_problem(), true, false), equipped(problem_with_memory(), false, true),
           equipped(problem_with_memory(), true, true), equipped(cascaded_problem(false), true, true)}) {
         const auto model = make_flight_model(problem);
-        for (int tried = 0; tried < 400; ++tried) {
+        for (int tried = 0; tried < repetitions(150, 400); ++tried) {
             const HoverAnalysis a = random_hover(*model, random);
             const bool is_unstable = a.verdict == HoldVerdict::unstable;
             // Within 0.02 1/s of neither, thirty seconds do not tell.
