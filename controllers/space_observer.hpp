@@ -104,4 +104,14 @@ void start_observing(double gain_1_s, double tick_s, const SpaceModel<n>& nomina
     }
 }
 
+/// Lets the observer estimate at the next tick what it estimated at this one, whatever pushes in between; up to noise
+/// in what the law saw. @param change of the nominal momentum over the tick   @param before memory at its start
+template <int n, class T>
+void hold_estimate(double gain_1_s, double tick_s, const T change[dynamics::space_speeds<n>],
+                   const T before[dynamics::space_speeds<n>], T kept[dynamics::space_speeds<n>]) {
+    for (int i = 0; i < dynamics::space_speeds<n>; ++i) {
+        kept[i] = before[i] - T(observed_share(gain_1_s, tick_s) / tick_s) * change[i];
+    }
+}
+
 }  // namespace downwash::controllers

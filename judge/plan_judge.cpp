@@ -70,12 +70,12 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
         const TouchSurface surface(*touching->touch, vehicle.world());
         const Plant touched = vehicle.touching(surface);
         loop.fly_with(touched);
-        TouchCourse course(*touching->touch, now, problem.robot);
+        TouchCourse course = course_of(*touching->touch, problem.robot);
         std::int64_t tick = end;
         for (; goes_on && !course.is_over(); ++tick) {
-            loop.next(tick, course.reference(), course.is_at_surface());
+            loop.next(tick, reference_of(course, *touching->touch, now), course.is_at_surface());
             course.next(loop.state().contact_n);
-            goes_on = umpire.sees_touch(loop, course.reference(), surface);
+            goes_on = umpire.sees_touch(loop, reference_of(course, *touching->touch, now), surface);
         }
         umpire.sees_hold(*touching->touch, course.hold());
         umpire.sees_goals(goals, hovers);

@@ -372,4 +372,15 @@ SpaceCommands SpaceControl::command_by(const Px4Cascade& law, const Tick& tick, 
     return {rotors.command_n, joints_nm};
 }
 
+void SpaceControl::stand_still(const SpaceControlMemory& before, const SpaceCoordinates& from,
+                               const SpaceCoordinates& to, SpaceControlMemory& memory) const {
+    memory.position_integral = before.position_integral;
+    memory.velocity_integral = before.velocity_integral;
+    memory.rate_integral = before.rate_integral;
+    memory.joint_integral = before.joint_integral;
+    if (observer_) {
+        memory.observer = observer_->held(before.observer, from, to);
+    }
+}
+
 }  // namespace downwash::judge

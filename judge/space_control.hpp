@@ -43,6 +43,11 @@ class SpaceControl {
                                                         const SpacePoint& reference, const SpaceSurroundings& surfaces,
                                                         SpaceControlMemory& memory) const;
 
+    /// Lets integrals stand still over a tick, and the observer estimate at the next one what it did at this one.
+    /// @param before memory at the beginning of the tick   @param from,to true motions at its ends
+    DOWNWASH_EXPORT void stand_still(const SpaceControlMemory& before, const SpaceCoordinates& from,
+                                     const SpaceCoordinates& to, SpaceControlMemory& memory) const;
+
  private:
     struct Tick;
     [[nodiscard]] SpaceCommands command_by(const SpaceInversion& law, const Tick& tick,

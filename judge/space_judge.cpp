@@ -9,8 +9,9 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "downwash/judge/placement.hpp"
-#include "downwash/judge/reference.hpp"
+#include "downwash/judge/space_goals.hpp"
 #include "downwash/judge/space_loop.hpp"
+#include "downwash/judge/space_reference.hpp"
 #include "downwash/judge/space_umpire.hpp"
 
 namespace downwash::judge {
@@ -50,8 +51,10 @@ SpaceCoordinates coordinates_of(const SpaceJudgedMotion& motion, int joints) {
     return at;
 }
 
+/// Whether a vehicle is level and does not move.
 bool is_at_rest(const SpaceCoordinates& at) {
-    return at.velocity_m_s.isZero(0) && at.body_rate_rad_s.isZero(0) && at.joint_rates_rad_s.isZero(0);
+    return at.attitude.x() == 0 && at.attitude.y() == 0 && at.velocity_m_s.isZero(0) && at.body_rate_rad_s.isZero(0) &&
+           at.joint_rates_rad_s.isZero(0);
 }
 
 /// The reference that rests where a vehicle is.
@@ -62,29 +65,6 @@ SpacePoint rest_at(const SpaceCoordinates& at) {
     here.position[space::yaw] = std::atan2(ahead.y(), ahead.x());
     std::copy_n(at.joints_rad.data(), at.joints_rad.size(), here.position + space::first_joint);
     return here;
-}
-
-/// The reference at a tick, by the quintic Hermite basis; behind the last knot the last.
-SpacePoint reference_at(const SpacePlan& plan, std::int64_t tick) {
-    const auto after = std::upper_bound(plan.reference.begin(), plan.reference.end(), tick,
-                                        [](std::int64_t t, const SpaceKnot& knot) { return t < knot.tick; });
-    if (after == plan.reference.end() || after == plan.reference.begin()) {
-        return after == plan.reference.begin() ? plan.reference.front().point : plan.reference.back().point;
-    }
-    const SpaceKnot& from = *(after - 1);
-    const double ticks = static_cast<double>(after->tick - from.tick);
-    SpacePoint point;
-    for (int axis = 0; axis < space_axes<max_joints>; ++axis) {
-        const auto course = [&](const SpacePoint& p) {
-            return Course{p.position[axis], p.velocity[axis], p.acceleration[axis]};
-        };
-        const Course at = between(course(from.point), course(after->point), ticks * plan.tick_s,
-                                  static_cast<double>(tick - from.tick) / ticks);
-        point.position[axis] = at.position;
-        point.velocity[axis] = at.velocity;
-        point.acceleration[axis] = at.acceleration;
-    }
-    return point;
 }
 
 /// Whether a vehicle could hover where it is.
@@ -100,17 +80,67 @@ bool settles(SpaceLoop& loop, const SpaceCoordinates& start, double tick_s) {
     return true;
 }
 
+/// A stay of a plan, and where it and what followed are among the rows.
+struct FlownStay {
+    SpaceStay stay;
+    std::optional<std::size_t> row, row_after;
+    std::optional<SpaceJudgedTouch> touch;
+};
+
+bool is_met(const SpaceJudgedTouch& touch) {
+    return touch.is_force_met && touch.is_place_met && touch.is_free;
+}
+
+/// Goes through the goals at the end of a flight.
+void judge_goals(const SpaceGoals& goals, const std::vector<FlownStay>& stays, const SpaceWorld& world, double tick_s,
+                 SpaceJudgedFlight& flight) {
+    constexpr double settling_at_goal_s = 1;
+    constexpr double slow_m_s = 0.05;
+    const auto settling = static_cast<std::size_t>(std::llround(settling_at_goal_s / tick_s));
+    flight.goals.resize(goals.count());
+    for (std::size_t goal = 0; goal < goals.count(); ++goal) {
+        const auto found =
+            std::find_if(stays.begin(), stays.end(), [goal](const FlownStay& each) { return each.stay.goal == goal; });
+        const FlownStay flown = found != stays.end() ? *found : FlownStay{{goal, 0, {}}, {}, {}, {}};
+        SpaceJudgedGoal& judged = flight.goals[goal];
+        judged.is_met = flown.row.has_value() && (!flown.touch || (is_met(*flown.touch) && flown.row_after));
+        judged.touch = flown.touch;
+        const auto look = [&](std::size_t last, std::size_t ticks) {
+            for (std::size_t i = last - std::min(last, ticks); i <= last; ++i) {
+                const SpaceJudgedMotion& motion = flight.rows[i].motion;
+                const SpaceGoalDistance off = goals.distance(flown.stay, motion, world);
+                judged.error_m = std::max(judged.error_m, off.distance_m);
+                judged.is_met =
+                    judged.is_met && off.used_share <= 1 && vector_of(motion.velocity_m_s).norm() < slow_m_s;
+            }
+        };
+        if (flown.row) {
+            look(*flown.row, settling);
+        } else if (!flight.rows.empty()) {
+            look(flight.rows.size() - 1, 0);
+        }
+        if (flown.row_after) {
+            look(*flown.row_after, settling);
+        }
+        if (!judged.is_met && flight.outcome == Outcome::ok) {
+            flight.outcome = Outcome::goal_missed;
+        }
+    }
+}
+
 }  // namespace
 
 struct SpaceJudge::Shared {
     SpaceRobot robot;
+    std::vector<Obstacle> all;
     std::shared_ptr<const DirectEffect> effect;
     SpaceObstacles obstacles;
     SpaceControl control;
 };
 
 SpaceJudge::SpaceJudge(const SpaceRobot& robot, const std::vector<Obstacle>& obstacles, const AeroSettings& aero)
-    : shared_(new Shared{robot, effect_of(robot, obstacles, aero), {obstacles, robot}, SpaceControl(robot)}) {}
+    : shared_(
+          new Shared{robot, obstacles, effect_of(robot, obstacles, aero), {obstacles, robot}, SpaceControl(robot)}) {}
 
 SpaceJudge::~SpaceJudge() = default;
 
@@ -136,14 +166,53 @@ SpaceJudgedFlight SpaceJudge::fly(const SpacePlan& plan, const SpaceFlightCondit
         }
         loop.forget(world);
     }
+    std::optional<SpaceGoals> goals;
+    std::vector<FlownStay> stays;
+    if (!conditions.goals.empty()) {
+        goals.emplace(shared.robot, shared.all, shared.obstacles, conditions.goals, conditions.in_any_order);
+        for (SpaceStay& stay : goals->stays(plan)) {
+            stays.push_back({std::move(stay), {}, {}, {}});
+        }
+    }
     SpaceUmpire umpire(shared.obstacles, surfaces, shared.robot, world, tick_s, flight);
-    const std::int64_t end = plan.reference.back().tick + conditions.hold_ticks;
+    const std::int64_t end = stays.empty() ? plan.reference.back().tick + conditions.hold_ticks : stays.back().stay.end;
     SpacePoint now = reference_at(plan, 0);
     bool goes_on = umpire.sees(loop, now);
+    std::int64_t flown = 0;  // ticks, touches included
+    auto stay = stays.begin();
     for (std::int64_t tick = 0; tick < end && goes_on; ++tick) {
-        loop.next(tick, now);
+        loop.next(flown++, now);
         now = reference_at(plan, tick + 1);
         goes_on = umpire.sees(loop, now);
+        if (!goes_on || stay == stays.end() || stay->stay.end != tick + 1) {
+            continue;
+        }
+        stay->row = flight.rows.size() - 1;
+        if (const auto& touch = stay->stay.touch) {
+            const SpaceTouchSurface surface(*touch, world);
+            const SpacePlant touched(vehicle, surfaces, std::nullopt, &surface);
+            loop.fly_with(touched);
+            TouchCourse course = course_of(*touch, shared.robot);
+            while (goes_on && !course.is_over()) {
+                const bool is_holding = course.is_holding();
+                loop.next(flown++, reference_of(course, *touch, now), course.is_at_surface());
+                course.next(loop.state().contact_n);
+                goes_on = umpire.sees_touch(loop, reference_of(course, *touch, now), surface, is_holding);
+            }
+            loop.fly_with(plant);
+            stay->touch = umpire.touch(*touch, course.hold());
+            if (goes_on) {
+                stay->row_after = flight.rows.size() - 1;
+            }
+            if (goes_on && !is_met(*stay->touch)) {
+                flight.outcome = Outcome::goal_missed;
+                goes_on = false;
+            }
+        }
+        ++stay;
+    }
+    if (goals) {
+        judge_goals(*goals, stays, world, tick_s, flight);
     }
     if (flight.outcome == Outcome::ok && conditions.energy_budget_j && flight.energy_j > *conditions.energy_budget_j) {
         flight.outcome = Outcome::over_budget;

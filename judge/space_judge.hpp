@@ -10,6 +10,7 @@
 #include "downwash/controllers/space_reference.hpp"
 #include "downwash/judge/space_judged_flight.hpp"
 #include "downwash/scene/shapes.hpp"
+#include "downwash/simulation/space_goal.hpp"
 #include "downwash/simulation/space_robot.hpp"
 #include "downwash/simulation/space_world_description.hpp"
 
@@ -18,17 +19,18 @@ namespace downwash::judge {
 /// How to fly.
 struct SpaceFlightConditions {
     SpaceJudgedMotion start;
-    std::int64_t hold_ticks = 0;  ///< hover after the last knot, >= 0
+    std::int64_t hold_ticks = 0;  ///< hover after the last knot, >= 0; with goals these say it
     bool aero = true;             ///< false: surfaces have no effect on the rotors
-    /// Empty: everything is nominal. In a world a vehicle that starts at rest has hovered there for 20 s before, in
-    /// calm air and with quiet sensors.
+    /// Empty: everything is nominal. In a world a vehicle that starts level and at rest has hovered there for 20 s
+    /// before, in calm air and with quiet sensors.
     std::optional<SpaceWorld> world;
     std::optional<double> energy_budget_j;
+    std::vector<SpaceGoal> goals;  ///< that the flight has to meet, one after the other; none: it is `ok` at its end
+    bool in_any_order = false;     ///< in the order in which the plan comes to them
 };
 
 /// Flies plans of a robot in space and says how they end. It shares parameters, shapes and the formulas of surface
-/// effects with the planner, and nothing that computes a flight (judge/README.md). It knows no goals: a flight that
-/// runs to its end is `ok`. Safe to share between threads.
+/// effects with the planner, and nothing that computes a flight (judge/README.md). Safe to share between threads.
 class DOWNWASH_EXPORT SpaceJudge {
  public:
     /// @throws InputError if a setting of the air is out of range or one that the judge does not know: models of

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "downwash/base/vector3.hpp"
@@ -29,6 +30,23 @@ struct SpaceJudgedRow {
     double energy_j = 0;
 };
 
+/// A touch in flight.
+struct SpaceJudgedTouch {
+    double force_n = 0;         ///< mean normal force over the hold; 0 if it was not held
+    Vector3 place_m{};          ///< middle of what touched as the hold began, in the nominal scene
+    double slip_m = 0;          ///< farthest along the surface over the hold
+    bool is_force_met = false;  ///< over every second of the hold
+    bool is_place_met = false;  ///< near the wanted place, if there is one, and without a slip
+    bool is_free = false;       ///< the robot came off the surface again
+};
+
+/// What became of a goal.
+struct SpaceJudgedGoal {
+    bool is_met = false;
+    double error_m = 0;  ///< worst over the last second of its hover, or where the flight ended before
+    std::optional<SpaceJudgedTouch> touch;
+};
+
 /// The figures of one flight of a plan in space, hover included.
 struct SpaceJudgedFlight {
     Outcome outcome = Outcome::ok;
@@ -37,7 +55,8 @@ struct SpaceJudgedFlight {
     double energy_j = 0;
     double duration_s = 0;
     double max_tracking_error_m = 0;
-    std::vector<SpaceJudgedRow> rows;  ///< one per control tick
+    std::vector<SpaceJudgedGoal> goals;  ///< one for each that was asked for
+    std::vector<SpaceJudgedRow> rows;    ///< one per control tick
 };
 
 }  // namespace downwash::judge

@@ -17,7 +17,7 @@ SpaceLoop::SpaceLoop(const SpaceControl& control, const SpaceSurroundings& nomin
                      const SpaceWorld& world, const SpaceRobot& robot, const SpaceCoordinates& start)
     : control_(control),
       nominal_surfaces_(nominal),
-      plant_(plant),
+      plant_(&plant),
       world_(world),
       robot_(robot),
       state_{bodies_at(plant.vehicle(), shifted(start, plant.vehicle().center_of_mass_m, 1)),
@@ -29,20 +29,25 @@ SpaceLoop::SpaceLoop(const SpaceControl& control, const SpaceSurroundings& nomin
       gusts_(world, control.tick_s()),
       wind_(Eigen::Vector3d::Zero()) {}
 
-void SpaceLoop::next(std::int64_t tick, const SpacePoint& reference) {
+void SpaceLoop::next(std::int64_t tick, const SpacePoint& reference, bool is_at_surface) {
     const SpaceTape tape = tape_at(world_, tick);
+    const SpaceCoordinates from = now_;
+    const SpaceControlMemory memory_before = memory_;
     before_ = state_;
     commands_ = control_.command(sensors_.seen(now_, tape), state_.thrust_n, reference, nominal_surfaces_, memory_);
     wind_ = gusts_.wind();
-    state_ = plant_.after(state_, commands_, wind_, control_.tick_s());
+    state_ = plant_->after(state_, commands_, wind_, control_.tick_s());
     sensors_.remember(now_);
     gusts_.next(tape);
-    now_ = shifted(coordinates_of(plant_.vehicle(), state_.bodies, now_.joints_rad), plant_.vehicle().center_of_mass_m,
-                   -1);
+    now_ = shifted(coordinates_of(plant_->vehicle(), state_.bodies, now_.joints_rad),
+                   plant_->vehicle().center_of_mass_m, -1);
+    if (state_.contact_n > 0 || is_at_surface) {
+        control_.stand_still(memory_before, from, now_, memory_);
+    }
 }
 
 BodyMotions SpaceLoop::bodies_within(double since_s) const {
-    return plant_.after(before_, commands_, wind_, since_s).bodies;
+    return plant_->after(before_, commands_, wind_, since_s).bodies;
 }
 
 void SpaceLoop::forget(const SpaceWorld& world) {

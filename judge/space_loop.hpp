@@ -16,14 +16,17 @@ class SpaceLoop {
                               const SpaceWorld& world, const SpaceRobot& robot, const SpaceCoordinates& start);
 
     [[nodiscard]] const SpacePlantState& state() const noexcept { return state_; }
-    [[nodiscard]] const SpacePlant& plant() const noexcept { return plant_; }
+    /// Another plant from here on: one that touches something, or none. @pre it outlives the loop
+    void fly_with(const SpacePlant& plant) noexcept { plant_ = &plant; }
+    [[nodiscard]] const SpacePlant& plant() const noexcept { return *plant_; }
     /// The motion of the point that the robot file calls the centre of mass; joints count on over whole turns.
     [[nodiscard]] const SpaceCoordinates& coordinates() const noexcept { return now_; }
     /// What the controller gave in the last tick.
     [[nodiscard]] const SpaceCommands& commands() const noexcept { return commands_; }
 
     /// Goes on by a tick. @param tick from the start of the flight
-    DOWNWASH_EXPORT void next(std::int64_t tick, const SpacePoint& reference);
+    /// @param is_at_surface integrals and the observer stand still, contact or not
+    DOWNWASH_EXPORT void next(std::int64_t tick, const SpacePoint& reference, bool is_at_surface = false);
     /// The bodies so long after the beginning of the last tick.
     [[nodiscard]] DOWNWASH_EXPORT BodyMotions bodies_within(double since_s) const;
     /// From now on, in a world: the vehicle was always in this state, and has spent no energy.
@@ -32,7 +35,7 @@ class SpaceLoop {
  private:
     const SpaceControl& control_;
     const SpaceSurroundings& nominal_surfaces_;
-    const SpacePlant& plant_;
+    const SpacePlant* plant_;
     SpaceWorld world_;
     const SpaceRobot& robot_;
     SpacePlantState state_, before_;

@@ -114,4 +114,11 @@ void SpaceObserver::expect(const SpaceCoordinates& seen, const Vector3d& force_n
         tick_s_ * (acting + free_momentum_rate(nominal_, bodies_at(nominal_, middle)) + memory.estimate);
 }
 
+SpaceObserverMemory SpaceObserver::held(SpaceObserverMemory memory, const SpaceCoordinates& from,
+                                        const SpaceCoordinates& to) const {
+    memory.expected_momentum +=
+        momentum_of(nominal_, bodies_at(nominal_, to)) - momentum_of(nominal_, bodies_at(nominal_, from));
+    return memory;
+}
+
 }  // namespace downwash::judge

@@ -34,6 +34,9 @@ class SpaceObserver {
     DOWNWASH_EXPORT void expect(const SpaceCoordinates& seen, const Eigen::Vector3d& force_n,
                                 const Eigen::Vector3d& torque_nm, const Eigen::VectorXd& joints_nm,
                                 SpaceObserverMemory& memory) const;
+    /// The memory with which the estimate stands still over a tick. @param memory before it
+    [[nodiscard]] SpaceObserverMemory held(SpaceObserverMemory memory, const SpaceCoordinates& from,
+                                           const SpaceCoordinates& to) const;
 
  private:
     const SpaceVehicle& nominal_;

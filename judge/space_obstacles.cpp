@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numbers>
 #include <utility>
 
@@ -159,6 +160,57 @@ double SpaceObstacles::self_clearance_m(const std::vector<BodyFrame>& frames) co
 
 bool SpaceObstacles::disc_keeps(double distance_m, const Vector3d& hub_m) const {
     return solids_->obstacles.distance_m(solids_->disc, moved(hub_m), distance_m) >= distance_m;
+}
+
+bool SpaceObstacles::line_keeps(double distance_m, const Vector3d& from_m, const Vector3d& to_m) const {
+    const Vector3d line = to_m - from_m;
+    Pose pose = moved(0.5 * (from_m + to_m));
+    if (!line.isZero(0)) {
+        pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), line).toRotationMatrix();
+    }
+    return solids_->obstacles.distance_m(capsule_of(distance_m, line.norm()), pose, infinity) > 0;
+}
+
+double SpaceObstacles::reach_beyond_m(const std::vector<BodyFrame>& frames, std::size_t body, const Vector3d& point_m,
+                                      const Vector3d& direction) const {
+    // What the solids leave of the gap to a plate in front of them.
+    constexpr double ahead_m = 1, width_m = 4, thickness_m = 0.2;
+    Pose pose = moved(point_m + (ahead_m + 0.5 * thickness_m) * direction);
+    pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), direction).toRotationMatrix();
+    std::vector<Part> plate;
+    read_shape(Box{{width_m, width_m, thickness_m}}, pose,
+               [&](Geometry geometry, const Pose& at) { plate.emplace_back(std::move(geometry), at); });
+    double gap_m = ahead_m;
+    for (const Part& part : solids_->bodies[body]) {
+        gap_m = std::min(gap_m, distance_between(*part.geometry, pose_of(frames[body]) * part.pose,
+                                                 *plate.front().geometry, plate.front().pose));
+    }
+    return ahead_m - gap_m;
+}
+
+struct NamedObstacle::Solids {
+    ObstacleSolids obstacles;
+    Geometry dot;
+
+    explicit Solids(const std::vector<Obstacle>& named) : obstacles(named) {
+        read_shape(Sphere{dot_m}, Pose::Identity(), [&](Geometry geometry, const Pose&) { dot = std::move(geometry); });
+        dot->computeLocalAABB();
+    }
+    static constexpr double dot_m = 1e-3;
+};
+
+NamedObstacle::NamedObstacle(const std::vector<Obstacle>& all, const std::string& name) {
+    std::vector<Obstacle> named;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(named),
+                 [&](const Obstacle& obstacle) { return obstacle.name == name; });
+    solids_ = std::make_unique<const Solids>(named);
+}
+
+NamedObstacle::~NamedObstacle() = default;
+
+double NamedObstacle::distance_m(const Vector3d& at_m) const {
+    const double from_dot_m = solids_->obstacles.distance_m(solids_->dot, moved(at_m), infinity);
+    return from_dot_m > 0 ? from_dot_m + Solids::dot_m : 0;
 }
 
 }  // namespace downwash::judge

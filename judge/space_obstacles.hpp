@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "downwash/judge/space_bodies.hpp"
@@ -38,6 +39,14 @@ class SpaceObstacles {
     /// Whether a level rotor disc keeps a distance from all obstacles.
     [[nodiscard]] DOWNWASH_EXPORT bool disc_keeps(double distance_m, const Eigen::Vector3d& hub_m) const;
 
+    /// Whether the line between two points keeps a distance from all obstacles.
+    [[nodiscard]] DOWNWASH_EXPORT bool line_keeps(double distance_m, const Eigen::Vector3d& from_m,
+                                                  const Eigen::Vector3d& to_m) const;
+    /// How far the solids of a body reach beyond a point of theirs along a direction of length 1 [m], >= 0.
+    [[nodiscard]] DOWNWASH_EXPORT double reach_beyond_m(const std::vector<BodyFrame>& frames, std::size_t body,
+                                                        const Eigen::Vector3d& point_m,
+                                                        const Eigen::Vector3d& direction) const;
+
     /// How far the solids of each body reach from the origin of its frame [m].
     [[nodiscard]] const std::vector<double>& reach_m() const noexcept { return reach_m_; }
 
@@ -45,6 +54,22 @@ class SpaceObstacles {
     struct Solids;
     std::unique_ptr<const Solids> solids_;
     std::vector<double> reach_m_;
+};
+
+/// The obstacles of one name.
+class NamedObstacle {
+ public:
+    DOWNWASH_EXPORT NamedObstacle(const std::vector<Obstacle>& all, const std::string& name);
+    DOWNWASH_EXPORT ~NamedObstacle();
+    NamedObstacle(const NamedObstacle&) = delete;
+    NamedObstacle& operator=(const NamedObstacle&) = delete;
+
+    /// How far a point is from them [m]; 0 within, infinity where there are none.
+    [[nodiscard]] DOWNWASH_EXPORT double distance_m(const Eigen::Vector3d& at_m) const;
+
+ private:
+    struct Solids;
+    std::unique_ptr<const Solids> solids_;
 };
 
 }  // namespace downwash::judge

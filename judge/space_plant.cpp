@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "downwash/judge/space_air.hpp"
+#include "downwash/judge/space_touching.hpp"
 
 namespace downwash::judge {
 namespace {
@@ -15,7 +16,7 @@ using Eigen::Vector3d;
 constexpr double tolerance = 1e-9;
 constexpr std::size_t per_body = 13;
 
-/// Position, quaternion (w, x, y, z), velocity and rate of each body; energy; thrusts.
+/// Position, quaternion (w, x, y, z), velocity and rate of each body; energy; thrusts; beside a surface its impulse.
 using Numbers = std::vector<double>;
 
 Numbers numbers_of(const SpacePlantState& state) {
@@ -84,7 +85,8 @@ double SpacePlant::rotor_power_w(const std::vector<double>& thrust_n) const {
 }
 
 Eigen::VectorXd SpacePlant::accelerations(const BodyMotions& bodies, const std::vector<double>& thrust_n,
-                                          const Eigen::VectorXd& joints_nm, const Vector3d& wind_m_s) const {
+                                          const Eigen::VectorXd& joints_nm, const Vector3d& wind_m_s,
+                                          double* contact_n) const {
     std::vector<BodyLoad> loads(bodies.size());
     std::vector<double> acting_n;
     const BodyMotion& body = bodies.front();
@@ -120,6 +122,10 @@ Eigen::VectorXd SpacePlant::accelerations(const BodyMotions& bodies, const std::
         loads[i + 1].torque_nm += torque_nm * axis;
         loads[i].torque_nm -= torque_nm * axis;
     }
+    const double pushed_n = surface_ != nullptr ? surface_->push(vehicle_, bodies, loads) : 0;
+    if (contact_n != nullptr) {
+        *contact_n = pushed_n;
+    }
     return linkage_.accelerations(bodies, loads);
 }
 
@@ -140,7 +146,11 @@ SpacePlantState SpacePlant::after(const SpacePlantState& state, const SpaceComma
                 change = (commands.thrust_n[i] - thrust_n[i]) / vehicle_.rotor_time_constant_s;
             }
         }
-        const Eigen::VectorXd a = accelerations(bodies, thrust_n, commands.joints_nm, wind_m_s);
+        double contact_n = 0;
+        const Eigen::VectorXd a = accelerations(bodies, thrust_n, commands.joints_nm, wind_m_s, &contact_n);
+        if (surface_ != nullptr) {
+            dy.back() = contact_n;
+        }
         double power_w = rotor_power_w(thrust_n);
         for (std::size_t i = 0; i < count; ++i) {
             const BodyMotion& b = bodies[i];
@@ -168,6 +178,9 @@ SpacePlantState SpacePlant::after(const SpacePlantState& state, const SpaceComma
         dy[energy_at] = power_w;
     };
     Numbers y = numbers_of(state);
+    if (surface_ != nullptr) {
+        y.push_back(0);
+    }
     const auto stepper = odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<Numbers>());
     odeint::integrate_adaptive(stepper, rate, y, 0.0, duration_s, duration_s);
     SpacePlantState next;
@@ -176,8 +189,10 @@ SpacePlantState SpacePlant::after(const SpacePlantState& state, const SpaceComma
     next.energy_j = y[energy_at];
     next.thrust_n = commands.thrust_n;
     if (has_lag) {
-        std::copy(y.begin() + static_cast<std::ptrdiff_t>(energy_at) + 1, y.end(), next.thrust_n.begin());
+        std::copy_n(y.begin() + static_cast<std::ptrdiff_t>(energy_at) + 1, next.thrust_n.size(),
+                    next.thrust_n.begin());
     }
+    next.contact_n = surface_ != nullptr && duration_s > 0 ? y.back() / duration_s : 0;
     return next;
 }
 

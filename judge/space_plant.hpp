@@ -21,24 +21,30 @@ struct SpacePlantState {
     BodyMotions bodies;
     std::vector<double> thrust_n;  ///< free-air thrust that the rotors' lag has reached
     double energy_j = 0;           ///< spent by rotors and joints
+    double contact_n = 0;          ///< mean normal force of a surface over the last tick
 };
+
+class SpaceTouchSurface;
 
 /// A vehicle among surfaces in moving air.
 class SpacePlant {
  public:
-    /// @param vehicle,surroundings outlive this   @param plane see Linkage
-    SpacePlant(const SpaceVehicle& vehicle, const SpaceSurroundings& surroundings, std::optional<HeldPlane> plane = {})
-        : vehicle_(vehicle), surroundings_(surroundings), linkage_(vehicle, std::move(plane)) {}
+    /// @param vehicle,surroundings outlive this   @param plane see Linkage   @param surface that the vehicle may touch
+    SpacePlant(const SpaceVehicle& vehicle, const SpaceSurroundings& surroundings, std::optional<HeldPlane> plane = {},
+               const SpaceTouchSurface* surface = nullptr)
+        : vehicle_(vehicle), surroundings_(surroundings), linkage_(vehicle, std::move(plane)), surface_(surface) {}
 
     [[nodiscard]] const SpaceVehicle& vehicle() const noexcept { return vehicle_; }
     [[nodiscard]] const Linkage& linkage() const noexcept { return linkage_; }
 
     /// Six accelerations of each body, world axes.
     /// @param thrust_n free-air thrusts at the nominal coefficient   @param wind_m_s of the air, world
+    /// @param[out] contact_n normal force of the surface; nullptr: not asked for
     [[nodiscard]] DOWNWASH_EXPORT Eigen::VectorXd accelerations(const BodyMotions& bodies,
                                                                 const std::vector<double>& thrust_n,
                                                                 const Eigen::VectorXd& joints_nm,
-                                                                const Eigen::Vector3d& wind_m_s) const;
+                                                                const Eigen::Vector3d& wind_m_s,
+                                                                double* contact_n = nullptr) const;
 
     /// The state after `duration_s` with the commands held and a steady wind: Dormand and Prince's method of fifth
     /// order with steps controlled to 1e-9 (relative and absolute, SI units), restarted here. Constraints are mended at
@@ -53,6 +59,7 @@ class SpacePlant {
     const SpaceVehicle& vehicle_;
     const SpaceSurroundings& surroundings_;
     Linkage linkage_;
+    const SpaceTouchSurface* surface_;
 };
 
 }  // namespace downwash::judge

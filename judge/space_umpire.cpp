@@ -71,6 +71,67 @@ bool SpaceUmpire::sees(const SpaceLoop& loop, const SpacePoint& reference) {
     return flight_.outcome == Outcome::ok;
 }
 
+bool SpaceUmpire::sees_touch(const SpaceLoop& loop, const SpacePoint& reference, const SpaceTouchSurface& surface,
+                             bool is_holding) {
+    constexpr double max_depth_m = 0.002;
+    constexpr double air_m = 5e-4;
+    const bool is_stable = stability_.is_stable(loop.coordinates(), reference);
+    if (!is_usable(loop.coordinates())) {
+        flight_.outcome = Outcome::unstable;
+        return false;
+    }
+    const SpaceVehicle& vehicle = loop.plant().vehicle();
+    const BodyMotions& bodies = loop.state().bodies;
+    const double depth_m = surface.depth_m(vehicle, bodies);
+    const double before_m = flight_.min_clearance_m;
+    std::vector<BodyFrame> frames = frames_of(vehicle, bodies, world_);
+    add_row(loop, reference, obstacles_.clearance_m(frames));
+    flight_.min_clearance_m = before_m;  // the touch does not count
+    // All but the surface sees a vehicle that is off it.
+    for (BodyFrame& frame : frames) {
+        frame.origin_m += std::max(0.0, depth_m + air_m) * vector_of(surface.touch().normal);
+    }
+    const double beside_m = obstacles_.clearance_m(frames);
+    const double self_m = obstacles_.self_clearance_m(frames);
+    if (!is_stable) {
+        flight_.outcome = Outcome::unstable;
+    } else if (depth_m > max_depth_m || beside_m <= 0 || self_m <= 0) {
+        flight_.outcome = Outcome::collision;
+        flight_.is_self_collision = depth_m <= max_depth_m && beside_m > 0;
+        flight_.min_clearance_m = 0;
+    } else if (!is_flyable(loop)) {
+        flight_.outcome = Outcome::left_flyable_area;
+    }
+    is_apart_ = depth_m < 0;
+    if (is_holding) {
+        const Eigen::Vector3d place_m = surface.middle_m(vehicle, bodies);
+        held_m_ = held_m_.value_or(place_m);
+        const Eigen::Vector3d way_m = place_m - *held_m_;
+        slip_m_ = std::max(slip_m_, way_m.cross(vector_of(surface.touch().normal)).norm());
+    }
+    last_ = {0, bodies, std::min(beside_m, 0.5 * self_m)};
+    return flight_.outcome == Outcome::ok;
+}
+
+SpaceJudgedTouch SpaceUmpire::touch(const SpaceTouch& touch, const std::optional<TouchCourse::Hold>& hold) {
+    SpaceJudgedTouch judged;
+    judged.is_free = std::exchange(is_apart_, true);
+    judged.slip_m = std::exchange(slip_m_, 0.0);
+    const std::optional<Eigen::Vector3d> held_m = std::exchange(held_m_, std::nullopt);
+    if (held_m) {
+        judged.place_m = vector3_of(*held_m);
+        const bool is_near =
+            !touch.wanted_m ||
+            (*held_m - vector_of(*touch.wanted_m)).cross(vector_of(touch.normal)).norm() <= touch.tolerance_m;
+        judged.is_place_met = is_near && judged.slip_m <= touch.tolerance_m;
+    }
+    if (hold) {
+        judged.force_n = hold->mean_n;
+        judged.is_force_met = hold->worst_second_n <= touch.force_tolerance_n;
+    }
+    return judged;
+}
+
 SpaceUmpire::Instant SpaceUmpire::instant_at(const SpaceLoop& loop, double since_s, BodyMotions bodies) const {
     const std::vector<BodyFrame> frames = frames_of(loop.plant().vehicle(), bodies, world_);
     return {since_s, std::move(bodies),

@@ -3,6 +3,7 @@
 #include "downwash/judge/space_judged_flight.hpp"
 #include "downwash/judge/space_loop.hpp"
 #include "downwash/judge/space_obstacles.hpp"
+#include "downwash/judge/space_touching.hpp"
 
 // How a flight in space ends, by the rules of docs/model.md 7.1. Private: not installed.
 
@@ -27,6 +28,11 @@ class SpaceUmpire {
 
     /// Looks at a vehicle at a tick. @return whether the flight goes on
     [[nodiscard]] bool sees(const SpaceLoop& loop, const SpacePoint& reference);
+    /// Looks at a vehicle that may touch a surface with the part that is meant to.
+    [[nodiscard]] bool sees_touch(const SpaceLoop& loop, const SpacePoint& reference, const SpaceTouchSurface& surface,
+                                  bool is_holding);
+    /// Says how the touch ended.
+    [[nodiscard]] SpaceJudgedTouch touch(const SpaceTouch& touch, const std::optional<TouchCourse::Hold>& hold);
 
  private:
     /// The bodies at an instant of a tick, and how far they are from contact.
@@ -50,6 +56,9 @@ class SpaceUmpire {
     SpaceJudgedFlight& flight_;
     SpaceStability stability_;
     Instant last_;
+    bool is_apart_ = true;  ///< from a surface that is touched
+    std::optional<Eigen::Vector3d> held_m_;
+    double slip_m_ = 0;
 };
 
 }  // namespace downwash::judge

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "downwash/controllers/reference_point.hpp"
 #include "downwash/judge/equations_of_motion.hpp"
+#include "downwash/judge/touch_course.hpp"
 #include "downwash/simulation/contact_goal.hpp"
 #include "downwash/simulation/robot.hpp"
 #include "downwash/simulation/world.hpp"
@@ -42,42 +41,10 @@ class TouchSurface {
     Planar shift_;
 };
 
-/// Leads a vehicle through a touch: to the surface, against it with a force, and back.
-class TouchCourse {
- public:
-    /// @param from reference of the hover   @pre touch outlives it
-    TouchCourse(const Touch& touch, const ReferencePoint& from, const Robot& robot);
+/// The course of a touch by a robot. @pre touch outlives it
+[[nodiscard]] TouchCourse course_of(const Touch& touch, const Robot& robot);
 
-    [[nodiscard]] ReferencePoint reference() const;
-    [[nodiscard]] bool is_over() const noexcept { return stage_ == Stage::over; }
-    /// Between the first contact and the last.
-    [[nodiscard]] bool is_at_surface() const noexcept {
-        return stage_ == Stage::settling || stage_ == Stage::holding || stage_ == Stage::pulling;
-    }
-    /// Goes on by a tick. @param force_n mean over it
-    void next(double force_n);
-
-    /// The force over the hold: its mean, and the worst mean of a second of it; empty if it was not held for a second.
-    struct Hold {
-        double mean_n, worst_second_n;
-    };
-    [[nodiscard]] std::optional<Hold> hold() const;
-
- private:
-    enum class Stage { coming, settling, holding, pulling, going, hovering, over };
-
-    void enter(Stage stage);
-
-    const Touch& touch_;
-    ReferencePoint from_;
-    double tick_s_;
-    double metres_per_newton_;  ///< How far the reference moves in a tick.
-    double settling_s_;
-    Stage stage_ = Stage::coming;
-    std::int64_t since_ = 0;  ///< ticks in this stage
-    std::int64_t free_ = 0;   ///< ticks without contact
-    double beyond_m_ = 0;     ///< Place of the reference, from the hover towards the surface.
-    std::vector<double> held_n_;
-};
+/// The reference of a tick that follows. @param from reference of the hover
+[[nodiscard]] ReferencePoint reference_of(const TouchCourse& course, const Touch& touch, ReferencePoint from);
 
 }  // namespace downwash::judge

@@ -282,7 +282,28 @@ Errors unclear_goals(const SpaceProblem& p) {
     return errors;
 }
 
-const std::array<Check<SpaceProblem>, 13> checks{{
+/// A soft law takes up the force of a touch slowly.
+Errors touches_that_settle_late(const SpaceProblem& p) {
+    constexpr double longest_s = 60;
+    bool asks_for_contact = false;
+    for_each_goal(p, [&](const SpaceGoal& goal, const std::string& /*key*/) {
+        asks_for_contact = asks_for_contact || std::holds_alternative<SpaceContactGoal>(goal.kind);
+    });
+    const double stiffness_1_s2 = std::visit(
+        [](const auto& law) {
+            return std::min(law.position_stiffness_1_s2(space::x), law.position_stiffness_1_s2(space::z));
+        },
+        p.robot.controller.law);
+    const double settling_s = touch_settling_constants / (force_loop_share * std::sqrt(stiffness_1_s2));
+    if (!asks_for_contact || settling_s <= longest_s) {
+        return {};
+    }
+    return {{"robot.controller", "answers a metre of position error with " + rounded(stiffness_1_s2) +
+                                     " m/s2: a touch would settle for more than " + rounded(longest_s) +
+                                     " s; raise the gains of the position"}};
+}
+
+const std::array<Check<SpaceProblem>, 14> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names<SpaceProblem>},
     {{"environment.obstacles"}, shapeless_cylinders<SpaceProblem>},
@@ -296,6 +317,7 @@ const std::array<Check<SpaceProblem>, 13> checks{{
     {{"planner.objective"}, weightless_objective<SpaceProblem>},
     {{"goal"}, missing_goals},
     {{"goal", "environment.bounds", "environment.obstacles", "robot.arm"}, unclear_goals},
+    {{"goal", "robot.controller"}, touches_that_settle_late},
 }};
 
 }  // namespace

@@ -21,8 +21,6 @@ constexpr double spacing_m = 0.25;
 constexpr std::size_t max_places = 16;
 /// Two rays to a flat surface may differ so much [m].
 constexpr double flatness_m = 1e-3;
-/// The vehicle hovers so long before it touches [s].
-constexpr double hover_before_s = 2;
 
 constexpr double nothing_m = std::numeric_limits<double>::infinity();
 
@@ -190,7 +188,7 @@ class TouchSearch {
         touch.standoff_m = contact_.standoff_m;
         touch.speed_m_s = contact_.speed_m_s;
         touch.hold_s = problem_.goal.hold_s;
-        goal.hold_s = hover_before_s;
+        goal.hold_s = touch_hover_s;
         const PlaneVector waiting{touch.surface_m.x + contact_.standoff_m * touch.normal.x,
                                   touch.surface_m.z + contact_.standoff_m * touch.normal.z};
         if (frame_points_m_.empty()) {

@@ -36,17 +36,21 @@ struct PlaneVector {
     double x = 0, z = 0;
 };
 
-/// How a robot that waits at a goal touches the surface in front of it.
-struct Touch {
-    PlaneVector surface_m;  ///< Point of the surface; for an arm that touches, its radius in front of it.
-    PlaneVector normal;     ///< Unit vector out of the surface, along x or z.
-    std::vector<PlaneVector>
-        frame_points_m;            ///< What of the multirotor touches, in the body frame; none: the end effector.
+/// What a touch of a surface is to be.
+struct TouchDemand {
     double force_n = 0;            ///< Normal force that is held.
     double force_tolerance_n = 0;  ///< Allowed error of the mean over a second.
     double standoff_m = 0;         ///< Distance from the surface, before and after.
     double speed_m_s = 0;          ///< Speed of approach and leaving.
     double hold_s = 0;             ///< How long the force is held.
+};
+
+/// How a robot that waits at a goal touches the surface in front of it.
+struct Touch : TouchDemand {
+    PlaneVector surface_m;  ///< Point of the surface; for an arm that touches, its radius in front of it.
+    PlaneVector normal;     ///< Unit vector out of the surface, along x or z.
+    std::vector<PlaneVector>
+        frame_points_m;  ///< What of the multirotor touches, in the body frame; none: the end effector.
 };
 
 /// A touch in flight.
@@ -70,6 +74,8 @@ inline constexpr double touch_settling_constants = 5;
 inline constexpr double touch_leaving_s = 8;
 /// How long the robot has to be free of the surface until it stops pulling [s].
 inline constexpr double touch_free_s = 0.1;
+/// How long the robot hovers in front of the surface before a touch, within the hold of its goal [s].
+inline constexpr double touch_hover_s = 2;
 /// How far in front of the hover the reference is when the robot gives up pulling [m].
 inline constexpr double touch_pull_m = 2;
 /// How far behind the nominal surface the robot gives up approaching [m].

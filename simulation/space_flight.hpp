@@ -10,6 +10,7 @@
 #include "downwash/controllers/space_reference.hpp"
 #include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/space_goal_rule.hpp"
 #include "downwash/simulation/space_loop.hpp"
 
 namespace downwash {
@@ -22,12 +23,16 @@ struct SpaceFlightSettings {
     simulation::SpaceAero aero = {};
     const SpaceChecker* checker = nullptr;  ///< of collisions, with obstacles in their nominal places; nullptr: none
     std::int64_t first_tick = 0;            ///< of the plan, from the start of the whole flight: for the world's noise
-    std::int64_t hold_ticks = 0;            ///< hover after the last knot, >= 0
+    std::int64_t hold_ticks = 0;            ///< hover after the last knot, >= 0; without goals, which say it themselves
     /// Whether the vehicle has hovered at its start for settling_before_start_s in this world, without noise and gusts.
     /// The start is then at rest.
     bool settles = false;
     bool is_refined = true;  ///< as many Runge-Kutta steps as a tick needs; false: equal ones, as in planning
-    /// Whether a motion meets the goal; empty: no goal. The vehicle meets it slowly and throughout the last second.
+    /// The goals that the flight has to meet, slowly and throughout the last second of the plan's hover for each;
+    /// nullptr: none. A contact follows its hover: the plan waits until the vehicle is back from the touch.
+    const SpaceGoalRule* goals = nullptr;
+    /// Whether a motion meets another goal; empty: no such goal. The vehicle meets it slowly and throughout the last
+    /// second.
     std::function<bool(const SpaceMotion& motion, const Vector3& end_effector_m)> meets_goal;
     /// Called with the row of every tick; anything but Rejection::none ends the flight.
     std::function<Rejection(const SpaceFlightRow& row)> after_tick;
@@ -39,13 +44,14 @@ struct SpaceFlightSettings {
 struct SpaceFlight {
     Outcome outcome = Outcome::ok;
     Rejection rejection = Rejection::none;  ///< why it ended early
-    double min_clearance_m = 0;             ///< at ticks; infinity without obstacles
+    double min_clearance_m = 0;             ///< at ticks; infinity without obstacles; touches do not count
     double energy_j = 0;
     double duration_s = 0;
     double max_tracking_error_m = 0;
     double max_saturation = 0;  ///< greatest demand over its limit; above 1 something was clipped
     int joints = 0, rotor_count = 0;
     bool has_rotor_lag = false;
+    std::vector<SpaceGoalVisit> goals;  ///< one for each goal of the rule, in their order there
     /// One per control tick, the last one at the end of the flight. Its commands are those that the controller would
     /// give next, or 0 where numbers are beyond max_result.
     std::vector<SpaceFlightRow> rows;
@@ -54,11 +60,14 @@ struct SpaceFlight {
 /// Where obstacles in their nominal places see a vehicle.
 [[nodiscard]] DOWNWASH_EXPORT SpacePose among_obstacles(const SpaceMotion& motion, const SpaceWorld& world) noexcept;
 
-/// Flies a plan from its first knot to its last and holds there. The flight ends early where
+/// Flies a plan from its first knot to its last and holds there. Where a plan hovers for a contact, the vehicle touches
+/// after that hover, with the part that is meant to and nothing else, and the plan then goes on. The flight ends early
+/// where
 /// - the vehicle is unstable: its numbers are not finite, it is more than unstable_error_m from its reference, or it
 ///   tilts by more than unstable_pitch_rad although it has been upright. A vehicle that starts tilted may recover;
 /// - the robot touches an obstacle or itself, at a tick or between two of them;
-/// - a rotor leaves the flyable area.
+/// - a rotor leaves the flyable area;
+/// - a touch is not met.
 /// @param start vehicle at the first knot
 /// @throws InputError if the robot has more joints than this library was built for; WorkStopped when `is_over` says so
 /// @pre space_robot_errors(robot) is empty, the plan has at least one knot, the robot's number of joints and its tick

@@ -9,6 +9,7 @@
 #include "downwash/base/vector3.hpp"
 #include "downwash/controllers/space_reference.hpp"
 #include "downwash/dynamics/plant.hpp"
+#include "downwash/dynamics/space_contact.hpp"
 #include "downwash/simulation/space_effect.hpp"
 #include "downwash/simulation/space_robot.hpp"
 #include "downwash/simulation/space_world.hpp"
@@ -43,13 +44,17 @@ struct SpaceFlightRow {
     double clearance_m = 0;  ///< infinity without obstacles
     Vector3 end_effector_m{};
     double power_w = 0;
-    double energy_j = 0;  ///< spent since the start
+    double energy_j = 0;         ///< spent since the start
+    double contact_force_n = 0;  ///< normal force of a surface that the robot touches, mean over the tick before
 };
 
 /// The greatest number of joints that this library was built for, from 3 to max_joints.
 [[nodiscard]] DOWNWASH_EXPORT int max_built_joints() noexcept;
 
 namespace simulation {
+
+/// @throws InputError if the robot has more joints than this library was built for
+DOWNWASH_EXPORT void require_built_joints(const SpaceRobot& robot);
 
 /// How surfaces act on a robot besides the field that says where.
 struct SpaceAero {
@@ -80,7 +85,13 @@ class DOWNWASH_EXPORT SpaceLoop {
     /// @param number of the tick, from the start of the whole flight, for the noise of the world
     /// @param[in,out] row gets the commands of the tick, their saturation, and the power at its beginning
     virtual void tick(std::int64_t number, const SpacePoint& reference, SpaceFlightRow& row) = 0;
-    /// The same without the noise and gusts of the world. @param[in,out] row as of tick()
+    /// tick() beside a surface that the robot may touch. Integrals and the estimate of an observer stand still in a
+    /// tick with contact: a surface that pushes is not what they are there for.
+    /// @param contact in the world; its points as of SpaceContactStep   @param is_at_surface they stand still anyway
+    /// @param[out] seen what happened at the surface
+    virtual void touching_tick(std::int64_t number, const SpacePoint& reference, const dynamics::SpaceContact& contact,
+                               bool is_at_surface, SpaceFlightRow& row, dynamics::SpaceContactRecord& seen) = 0;
+    /// tick() without the noise and gusts of the world. @param[in,out] row as of tick()
     virtual void quiet_tick(const SpacePoint& reference, SpaceFlightRow& row) = 0;
     /// What the controller would command now without noise; nothing moves. @param[in,out] row as of tick()
     virtual void look(const SpacePoint& reference, SpaceFlightRow& row) = 0;

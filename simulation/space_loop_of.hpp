@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "downwash/dynamics/rotor_power.hpp"
+#include "downwash/dynamics/space_contact_step.hpp"
 #include "downwash/simulation/noise.hpp"
 #include "downwash/simulation/space_loop.hpp"
 #include "downwash/simulation/space_tick.hpp"
@@ -86,7 +87,9 @@ class SpaceLoopOf final : public SpaceLoop {
           quiet_(world_.numbers),
           plant_(plant_in(model_, world_.numbers)),
           effect_(setup.effect),
-          step_{setup.is_refined, {dynamics::joint_steps(model_.nominal.plant, model_.tick_s)}} {
+          step_{setup.is_refined,
+                {dynamics::joint_steps(model_.nominal.plant, model_.tick_s)},
+                world_.numbers.center_of_mass_m} {
         quiet_.gust_m_s = 0;
         start({});
     }
@@ -106,6 +109,17 @@ class SpaceLoopOf final : public SpaceLoop {
         }
         step(world_.numbers, noise, reference, row);
         std::swap(state_, next_);
+    }
+    void touching_tick(std::int64_t number, const SpacePoint& reference, const dynamics::SpaceContact& contact,
+                       bool is_at_surface, SpaceFlightRow& row, dynamics::SpaceContactRecord& seen) override {
+        step_.contact = &contact;
+        step_.seen = &seen;
+        const SpaceFlightState<double, n> before = state_;
+        tick(number, reference, row);
+        step_.contact = nullptr;
+        if (seen.normal_impulse_n_s > 0 || is_at_surface) {
+            stand_still(before);
+        }
     }
     void quiet_tick(const SpacePoint& reference, SpaceFlightRow& row) override {
         look(reference, row);
@@ -153,12 +167,19 @@ class SpaceLoopOf final : public SpaceLoop {
     struct ChosenStep {
         bool is_refined;
         dynamics::EqualSpaceSteps equal;
+        dynamics::LaneVector<double> center_of_mass_m;
+        const dynamics::SpaceContact* contact = nullptr;  ///< a surface beside which it moves; nullptr: none
+        dynamics::SpaceContactRecord* seen = nullptr;     ///< what happens there
 
         template <class Around>
         dynamics::SpaceState<double, n> operator()(const SpaceModel<n>& model,
                                                    const dynamics::SpaceState<double, n>& state,
                                                    const dynamics::SpaceCommand<double, n>& command, double dt_s,
                                                    const Around& around) const {
+            if (contact != nullptr) {
+                const dynamics::SpaceContactStep beside{*contact, center_of_mass_m, *seen, equal.count};
+                return beside(model, state, command, dt_s, around);
+            }
             return is_refined ? dynamics::RefinedSpaceStep{}(model, state, command, dt_s, around)
                               : equal(model, state, command, dt_s, around);
         }
@@ -183,6 +204,34 @@ class SpaceLoopOf final : public SpaceLoop {
         for (int i = 0; i < n; ++i) {
             row.power_w += std::abs(row.joint_torque_nm[i] * now.u[6 + i]);
         }
+    }
+    /// Lets integrals stand still over the last tick, and an observer estimate what it did. @param before the tick
+    void stand_still(const SpaceFlightState<double, n>& before) {
+        std::visit(
+            [&]<class Law>(const Law& law) {
+                const auto kept = recalled<Law>(before.memory);
+                auto memory = Law::with_integrals_of(kept, recalled<Law>(state_.memory));
+                if constexpr (requires { law.observer_gain_1_s; }) {
+                    if (law.observer_gain_1_s > 0) {
+                        const SpaceModel<n>& nominal = model_.nominal.plant;
+                        const auto momentum_of = [&](const dynamics::SpaceState<double, n>& plant, double* p) {
+                            const auto places = dynamics::places_at(nominal, plant.q);
+                            dynamics::momentum(nominal, places, dynamics::equations_of_motion(nominal, places, plant.u),
+                                               plant.u, p);
+                        };
+                        double change[dynamics::space_speeds<n>], old[dynamics::space_speeds<n>];
+                        momentum_of(state_.plant, change);
+                        momentum_of(before.plant, old);
+                        for (int i = 0; i < dynamics::space_speeds<n>; ++i) {
+                            change[i] -= old[i];
+                        }
+                        controllers::hold_estimate<n>(law.observer_gain_1_s, model_.tick_s, change, kept.observed,
+                                                      memory.observed);
+                    }
+                }
+                remember(memory, state_.memory);
+            },
+            model_.law);
     }
     [[nodiscard]] dynamics::LaneVector<double> hub(const dynamics::LaneRotation<double>& attitude, int rotor) const {
         return dynamics::LaneVector<double>{state_.plant.q[0], state_.plant.q[1], state_.plant.q[2]} +

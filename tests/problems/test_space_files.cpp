@@ -111,6 +111,20 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
     CHECK(problem_sha256(problem) != before);
 }
 
+TEST_CASE("a law in space that takes up the force of a touch slowly is an error") {
+    const TestFolder folder;
+    SpaceProblem problem = read_good_space_problem(folder);
+    problem.goals = {SpaceGoal{SpaceContactGoal{.obstacle = "pole"}, 3, {}}};
+    CHECK(space_problem_errors(problem).empty());
+    std::get<SpaceInversion>(problem.robot.controller.law).height.kp_1_s2 = 0.04;
+    const auto errors = space_problem_errors(problem);
+    REQUIRE(errors.size() == 1);
+    CHECK(errors[0].key == "robot.controller");
+    CHECK_THAT(errors[0].message, Catch::Matchers::Contains("settle for more than 60 s"));
+    problem.goals = {SpaceGoal{SpaceEndEffectorGoal{{3, -2, 2.5}, 0.1, {}, 1}, 3, {}}};
+    CHECK(space_problem_errors(problem).empty());
+}
+
 TEST_CASE("a robot in space is read as it was written") {
     const TestFolder folder;
     SpaceRobot robot = read_good_space_problem(folder).robot;

@@ -60,6 +60,9 @@ struct SpaceContactGoal {
     std::optional<double> force_tolerance_n;  ///< allowed error of the mean over a second, > 0; empty: a fifth
     double standoff_m = 0.3;                  ///< distance from the surface before and after, > 0
     double speed_m_s = 0.1;                   ///< of approach and leaving, > 0
+
+    /// The allowed error of the mean force over a second [N].
+    [[nodiscard]] double tolerance_n() const noexcept { return force_tolerance_n.value_or(0.2 * force_n); }
 };
 
 using SpaceGoalKind =
