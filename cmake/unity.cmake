@@ -1,10 +1,29 @@
 # Sources of a target compiled several at a time: a build from nothing reads their headers once instead of ten times. After a
-# change of one source it compiles those beside it again, so a folder to work in may have it off. Names in unnamed namespaces
-# of a folder differ, but for those of the plane and their counterparts in space.
+# change of one source it compiles those beside it again, so a folder to work in may have it off.
 
 option(DOWNWASH_UNITY "Compile the sources of a module several at a time: faster from nothing, slower after a change" OFF)
 
-# Sources with compile options or definitions of their own are compiled alone, as are those with SKIP_UNITY_BUILD_INCLUSION.
+# Sets OUT to what a source declares at the left margin, as far as it could meet the same in another source: names of types,
+# constants and variables, functions with the types of their parameters.
+function(downwash_names_in OUT SOURCE)
+  file(READ ${SOURCE} text)
+  string(REGEX REPLACE "\n *(namespace|using namespace|using [A-Za-z_]+::|#|//|template)[^\n]*" "\n" text "${text}")
+  string(REGEX REPLACE "[][]" " " text "${text}")
+  string(REPLACE ";" " ;" text "${text}")
+  string(REGEX MATCHALL "\n[a-zA-Z][^\n({=;]*[ *&][A-Za-z_0-9]+\\([^\n;{]*" functions "${text}")
+  list(TRANSFORM functions REPLACE "^[^(]*[ *&]([A-Za-z_0-9]+\\()" "\\1")
+  list(TRANSFORM functions REPLACE " [A-Za-z_0-9]+([,)])" "\\1")
+  string(REGEX MATCHALL "\n(struct|class|enum class|using) [A-Za-z_0-9]+" types "${text}")
+  string(REGEX MATCHALL "\n(const|constexpr) [^\n(={;]*[ *&][A-Za-z_0-9]+ *[={(]" values "${text}")
+  list(TRANSFORM types REPLACE "^.* " "")
+  list(TRANSFORM values REPLACE "^.*[ *&]([A-Za-z_0-9]+) *[={(]$" "\\1")
+  set(names ${functions} ${types} ${values})
+  list(REMOVE_DUPLICATES names)
+  set(${OUT} ${names} PARENT_SCOPE)
+endfunction()
+
+# Each source goes into the first batch of at most ten in which nothing is called as something in it. Those with compile options
+# or definitions of their own are compiled alone, as are those with SKIP_UNITY_BUILD_INCLUSION.
 function(downwash_unite TARGET)
   if(NOT DOWNWASH_UNITY)
     return()
@@ -13,13 +32,21 @@ function(downwash_unite TARGET)
     UNITY_BUILD_CODE_BEFORE_INCLUDE "// NOLINTNEXTLINE(bugprone-suspicious-include)")
   get_target_property(sources ${TARGET} SOURCES)
   foreach(source IN LISTS sources)
-    get_filename_component(group "${source}" DIRECTORY)
-    string(MAKE_C_IDENTIFIER "of_${group}" group)
-    if(source MATCHES "(space|volume|brick)_[a-z_]*\\.cpp$")
-      string(APPEND group _space)
-    endif()
-    math(EXPR count_${group} "0${count_${group}} + 1")
-    math(EXPR batch "(${count_${group}} - 1) / 10")
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group}_${batch})
+    get_filename_component(path ${source} ABSOLUTE)
+    downwash_names_in(names ${path})
+    foreach(batch RANGE 100)
+      set(all ${names_${batch}} ${names})
+      list(LENGTH all before)
+      list(REMOVE_DUPLICATES all)
+      list(LENGTH all after)
+      list(LENGTH sources_${batch} size)
+      if(size LESS 10 AND before EQUAL after)
+        set(group ${batch})
+        break()
+      endif()
+    endforeach()
+    list(APPEND sources_${group} ${source})
+    list(APPEND names_${group} ${names})
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
   endforeach()
 endfunction()

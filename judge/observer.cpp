@@ -8,7 +8,7 @@
 namespace downwash::judge {
 namespace {
 
-double dot(Planar a, Planar b) {
+double planar_dot(Planar a, Planar b) {
     return a.x * b.x + a.z * b.z;
 }
 
@@ -50,8 +50,8 @@ Four momentum_of(const Vehicle& v, const Motion& m) {
     const Planar both = v.body_mass_kg * m.velocity_m_s + arm;
     const double arm_spin = v.arm_inertia_kg_m2 * b.arm_rate_rad_s;
     return {both.x, both.z,
-            v.body_inertia_kg_m2 * m.pitch_rate_rad_s + arm_spin + dot(arm, b.joint_per_pitch + b.arm_per_pitch),
-            arm_spin + dot(arm, b.arm_per_pitch)};
+            v.body_inertia_kg_m2 * m.pitch_rate_rad_s + arm_spin + planar_dot(arm, b.joint_per_pitch + b.arm_per_pitch),
+            arm_spin + planar_dot(arm, b.arm_per_pitch)};
 }
 
 Four free_momentum_rate(const Vehicle& v, const Motion& m) {
@@ -59,8 +59,8 @@ Four free_momentum_rate(const Vehicle& v, const Motion& m) {
     constexpr double g = standard_gravity_m_s2;
     const Planar arm = v.arm_mass_kg * b.arm_velocity_m_s;
     return {0, -v.mass_kg() * g,
-            dot(arm, b.velocity_per_pitch) - v.arm_mass_kg * g * (b.joint_per_pitch.z + b.arm_per_pitch.z),
-            dot(arm, b.velocity_per_arm) - v.arm_mass_kg * g * b.arm_per_pitch.z};
+            planar_dot(arm, b.velocity_per_pitch) - v.arm_mass_kg * g * (b.joint_per_pitch.z + b.arm_per_pitch.z),
+            planar_dot(arm, b.velocity_per_arm) - v.arm_mass_kg * g * b.arm_per_pitch.z};
 }
 
 Observer::Observer(const Vehicle& nominal, double gain_1_s, double tick_s)

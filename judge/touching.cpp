@@ -14,7 +14,7 @@ constexpr double dissipation_s_m = 10;
 constexpr double friction = 0.5;
 constexpr double slip_speed_m_s = 0.02;
 
-double dot(PlaneVector a, Planar b) {
+double planar_dot(PlaneVector a, Planar b) {
     return a.x * b.x + a.z * b.z;
 }
 
@@ -40,7 +40,7 @@ std::vector<TouchSurface::Place> TouchSurface::places(const Vehicle& vehicle, co
 
 double TouchSurface::depth_m(const Place& place) const {
     const Planar surface = Planar{touch_->surface_m.x, touch_->surface_m.z} + shift_;
-    return dot(touch_->normal, surface - place.position_m);
+    return planar_dot(touch_->normal, surface - place.position_m);
 }
 
 double TouchSurface::depth_m(const Vehicle& vehicle, const Motion& motion) const {
@@ -59,7 +59,7 @@ double TouchSurface::push(const Vehicle& vehicle, const Motion& motion, Loads& l
             continue;
         }
         const Planar out{touch_->normal.x, touch_->normal.z};
-        const double leaving_m_s = dot(touch_->normal, place.velocity_m_s);
+        const double leaving_m_s = planar_dot(touch_->normal, place.velocity_m_s);
         const double normal_n = std::max(0.0, stiffness_n_m * depth * (1 - dissipation_s_m * leaving_m_s));
         const Planar slip = place.velocity_m_s - leaving_m_s * out;
         const double speed = std::hypot(slip.x, slip.z, slip_speed_m_s);

@@ -32,10 +32,10 @@ bool has_no_map(const AeroSettings& a, std::size_t) {
 }
 
 /// One side's surface effect in the settings.
-using Side = SurfaceEffect AeroSettings::*;
+using SurfaceMember = SurfaceEffect AeroSettings::*;
 
 /// The model's name, and as many rows as all models together have parameters.
-void add_model(Rows& rows, const std::string& path, const std::vector<EffectModelInfo>& models, Side side) {
+void add_model(Rows& rows, const std::string& path, const std::vector<EffectModelInfo>& models, SurfaceMember side) {
     std::vector<std::string_view> names;
     names.reserve(models.size());
     for (const EffectModelInfo& model : models) {
@@ -74,7 +74,7 @@ std::shared_ptr<const EffectTable> points_in(const std::string& file, const std:
     return pipe_radii ? std::make_shared<const EffectTable>(points_of_pipe(*table, *pipe_radii)) : table;
 }
 
-void add_table(Rows& rows, const std::string& path, Side side) {
+void add_table(Rows& rows, const std::string& path, SurfaceMember side) {
     const auto is_table = [side](const AeroSettings& a, std::size_t) { return (a.*side).model == EffectModel::table; };
     rows.push_back(parameters::file<AeroSettings>(
                        path + ".file", "the table, CSV with z_over_r, perhaps d_over_r, and factor",
@@ -104,7 +104,7 @@ void add_table(Rows& rows, const std::string& path, Side side) {
 }
 
 void add_surface(Rows& rows, const std::string& path, const std::string& description,
-                 const std::vector<EffectModelInfo>& models, Side side, double TiltLoss::*tilt_loss) {
+                 const std::vector<EffectModelInfo>& models, SurfaceMember side, double TiltLoss::*tilt_loss) {
     auto surface = parameters::group<AeroSettings>(path, description).or_none().only("without aero.map", has_no_map);
     surface.resize = [side](AeroSettings& a, std::size_t, std::size_t count) {
         if (count == 0) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "downwash/base/infinity.hpp"
 #include "downwash/dynamics/flight_step.hpp"
 #include "downwash/simulation/beyond_model.hpp"
 #include "downwash/simulation/effect_slope.hpp"

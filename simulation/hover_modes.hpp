@@ -20,9 +20,8 @@ inline constexpr double radius_slack = 1e-9;
 /// @param jacobian of one tick at its fixed point
 template <class Matrix, class Stability>
 void find_modes(const Matrix& jacobian, double tick_s, Stability& stability) {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    stability.spectral_radius = infinity;
-    stability.growth_rate_1_s = infinity;
+    stability.spectral_radius = std::numeric_limits<double>::infinity();
+    stability.growth_rate_1_s = std::numeric_limits<double>::infinity();
     stability.growing_modes = static_cast<int>(jacobian.rows());
     if (!jacobian.allFinite()) {
         return;

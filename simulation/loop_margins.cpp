@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "downwash/base/infinity.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/numbers.hpp"
 #include "downwash/dynamics/flight_step.hpp"

@@ -69,7 +69,12 @@ def test_targets_in_any_order_are_flown_again_in_the_order_of_the_plan(open_air)
     x_m, z_m = open_air["start.x_m"], open_air["start.z_m"]
     targets = [{"configuration": {"x_m": x_m + d, "z_m": z_m}, "hold_s": 1} for d in (3, 1, 2)]
     problem = open_air.replace(
-        {"goal": {"in_any_order": targets}, "planner.max_iterations": 500, "planner.time_limit_s": None}
+        {
+            "uncertainty": "none",
+            "goal": {"in_any_order": targets},
+            "planner.max_iterations": 500,
+            "planner.time_limit_s": None,
+        }
     )
     solution = downwash.solve(problem, variant="mp-arm-da")
     assert solution.status == "solved"
