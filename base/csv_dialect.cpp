@@ -39,6 +39,26 @@ NumberParts parts_of(std::string_view number) {
 
 }  // namespace
 
+char line_end_of(std::string_view text) {
+    bool is_begin = true;  // of a line
+    bool is_comment = false;
+    bool is_quoted = false;
+    bool has_feed = false;
+    bool has_return = false;
+    for (const char c : text) {
+        const bool is_end = c == '\n' || c == '\r';
+        is_comment = !is_end && (is_comment || (c == '#' && is_begin && !is_quoted));
+        is_quoted = is_quoted != (c == '"' && !is_comment);
+        is_begin = is_end || (is_begin && (c == ' ' || c == '\t'));
+        has_feed = has_feed || c == '\n';
+        has_return = has_return || (c == '\r' && !is_quoted);
+        if (c == '\n' && !is_quoted) {
+            return '\n';
+        }
+    }
+    return has_feed && !has_return ? '\n' : '\r';
+}
+
 char separator_of(std::string_view line) {
     std::string outside;  // what stands outside quotation marks, a letter for what stands inside
     bool is_quoted = false;
@@ -89,6 +109,10 @@ std::optional<double> decimal_number(std::string_view text, char decimal_sign) {
         }
     }
     return parse_number<double>(number);
+}
+
+bool is_number(std::string_view text) {
+    return decimal_number(text, '.') || decimal_number(text, ',');
 }
 
 WrittenDigits written_digits(std::string_view number) {

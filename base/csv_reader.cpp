@@ -1,50 +1,19 @@
 #include "downwash/base/csv_reader.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "downwash/base/csv_dialect.hpp"
+#include "downwash/base/csv_remedies.hpp"
 #include "downwash/base/number_remedy.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {
 namespace {
 
-bool is_number(std::string_view cell) {
-    return decimal_number(cell, '.') || decimal_number(cell, ',');
-}
-
-std::string count_text(std::size_t count, const char* thing) {
-    return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
-
 /// Comments take more memory than their two bytes in a file.
 constexpr std::size_t max_comments = 1'000'000;
-
-/// What ends lines: the line feed, or the carriage return if no line feed stands outside quotation marks.
-char line_end_of(std::string_view text) {
-    bool is_begin = true;  // of a line
-    bool is_comment = false;
-    bool is_quoted = false;
-    bool has_feed = false;
-    bool has_return = false;
-    for (const char c : text) {
-        const bool is_end = c == '\n' || c == '\r';
-        is_comment = !is_end && (is_comment || (c == '#' && is_begin && !is_quoted));
-        is_quoted = is_quoted != (c == '"' && !is_comment);
-        is_begin = is_end || (is_begin && (c == ' ' || c == '\t'));
-        has_feed = has_feed || c == '\n';
-        has_return = has_return || (c == '\r' && !is_quoted);
-        if (c == '\n' && !is_quoted) {
-            return '\n';
-        }
-    }
-    return has_feed && !has_return ? '\n' : '\r';
-}
-
-std::string separator_text(char separator) {
-    return separator == '\t' ? "tabs" : separator == ' ' ? "blanks" : "'" + std::string(1, separator) + "'";
-}
 
 }  // namespace
 
@@ -84,41 +53,7 @@ std::size_t CsvReader::required(std::string_view name, std::string_view expected
 }
 
 std::string CsvReader::remedy_without(std::initializer_list<std::string_view> missing) const {
-    std::string remedy;
-    for (const std::string_view name : missing) {
-        remedy += find(name) ? "" : header_remedy(name);
-    }
-    if (!remedy.empty()) {
-        return remedy;
-    }
-    if (std::any_of(names_.begin(), names_.end(), [](const auto& n) { return n.find('|') != std::string::npos; })) {
-        return "; separate columns by ';', tabs or ',', not by '|'";
-    }
-    std::string_view rest = rest_;
-    for (std::size_t line = next_line_; line < next_line_ + 5 && !rest.empty(); ++line) {
-        const std::string_view text = rest.substr(0, rest.find(line_end_));
-        if (std::any_of(missing.begin(), missing.end(),
-                        [text](std::string_view name) { return text.find(name) != std::string_view::npos; })) {
-            return "; the names seem to stand in line " + std::to_string(line) + ": begin the lines above with #";
-        }
-        rest.remove_prefix(std::min(text.size() + 1, rest.size()));
-    }
-    return {};
-}
-
-/// What to do about a column that is called like `name` but for a unit or blanks.
-std::string CsvReader::header_remedy(std::string_view name) const {
-    for (const std::string& written : names_) {
-        const std::size_t unit = std::min(written.find_first_of("[("), written.size());
-        std::string plain(trimmed(std::string_view(written).substr(0, unit)));
-        std::replace_if(
-            plain.begin(), plain.end(), [](char c) { return c == ' ' || c == '-' || c == '/' || c == '.'; }, '_');
-        if (is_same_word(plain, name)) {
-            return "; write '" + excerpt(written) + "' as " + std::string(name) +
-                   (written.find('%', unit) != std::string::npos ? ", and divide percent by 100" : "");
-        }
-    }
-    return {};
+    return names_remedy(names_, missing, {rest_, line_end_, next_line_});
 }
 
 bool CsvReader::next() {
@@ -142,32 +77,13 @@ bool CsvReader::next() {
 }
 
 void CsvReader::add_length_error(std::size_t count) {
-    std::string message = "holds " + count_text(count, "cell") + ": expected " + std::to_string(names_.size()) +
-                          ", one for each column of line " + std::to_string(header_line_);
-    const auto are_digits = [](const Cell& cell) {
-        return cell.text.find_first_not_of("+-0123456789") == std::string_view::npos;
-    };
-    if (separator_ == ',' && count > names_.size() && std::all_of(cells_.begin(), cells_.end(), are_digits)) {
-        errors_.add(line_,
-                    message + "; if its numbers have decimal commas, separate the columns by ';' or quote the numbers");
-        errors_.throw_any();  // as all lines will be
-    }
-    if (count == names_.size() + 1 && rows_ == 1 && separator_ == ' ' && cells_.front().text == "1") {
-        errors_.add(line_, message +
-                               "; if the first one is the name of a row, as R writes it, leave those out "
-                               "(row.names = FALSE)");
+    std::vector<std::string_view> texts;
+    std::transform(cells_.begin(), cells_.end(), std::back_inserter(texts), [](const Cell& cell) { return cell.text; });
+    const LengthError error = length_error(texts, count, {separator_, names_.size(), header_line_, rows_ == 1});
+    errors_.add(line_, error.message);
+    if (error.is_of_all_rows) {
         errors_.throw_any();
     }
-    const std::string_view first = cells_.front().text;
-    const char other = separator_of(first);
-    std::string_view rest = first;
-    const bool is_other = other == ' ' ? separator_ != ' ' && is_number(take_word(rest)) && !rest.empty()
-                                       : other != separator_ && first.find(other) != std::string_view::npos;
-    if (count == 1 && is_other) {
-        errors_.add(line_, message + "; separate it as the names, by " + separator_text(separator_));
-        errors_.throw_any();
-    }
-    errors_.add(line_, message);
 }
 
 std::optional<double> CsvReader::number(std::size_t column, double low, double high) {
@@ -186,7 +102,7 @@ std::optional<double> CsvReader::number(std::size_t column, double low, double h
         range.high = std::max(range.high, *value);
         return value;
     }
-    std::string expected = sign_error(text);
+    std::string expected = sign_remedy(text, decimal_sign_, decimal_line_);
     if (expected.empty()) {
         const bool is_limited = low > -std::numeric_limits<double>::max();
         expected =
@@ -244,25 +160,6 @@ std::optional<double> CsvReader::only_reading(std::string_view cell, double low,
         return decimal;
     }
     return thousands;
-}
-
-/// What is wrong with the decimal sign of a cell; empty if it is not the sign.
-std::string CsvReader::sign_error(std::string_view cell) const {
-    const char other = decimal_sign_ == '.' ? ',' : '.';
-    if (cell.find(other) == std::string_view::npos || !decimal_number(cell, other)) {
-        return {};
-    }
-    if (decimal_line_ == 0) {
-        std::string as_decimal(cell);
-        std::replace(as_decimal.begin(), as_decimal.end(), ',', '.');
-        std::string as_thousands(cell);
-        std::erase(as_thousands, ',');
-        return ", which may mean " + excerpt(as_decimal) + " or " + excerpt(as_thousands) +
-               ": expected one of these; add a zero to its decimals, or leave out what stands between thousands";
-    }
-    return std::string(other == ',' ? ", with a comma" : ", with a point") + ", but a number in line " +
-           std::to_string(decimal_line_) + " has a decimal " + (other == ',' ? "point" : "comma") +
-           ": expected one decimal sign in the whole file, and none between thousands";
 }
 
 void CsvReader::take_header() {

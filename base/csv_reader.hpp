@@ -110,9 +110,7 @@ class DOWNWASH_EXPORT CsvReader {
     [[nodiscard]] bool is_end(std::size_t at) const { return at >= rest_.size() || rest_[at] == line_end_; }
     [[nodiscard]] bool is_blank(std::size_t at) const;
     [[nodiscard]] std::size_t skip_blanks(std::size_t at) const;
-    [[nodiscard]] std::string sign_error(std::string_view cell) const;
     [[nodiscard]] std::optional<double> only_reading(std::string_view cell, double low, double high);
-    [[nodiscard]] std::string header_remedy(std::string_view name) const;
 
     Utf8Text text_;
     LineErrors& errors_;

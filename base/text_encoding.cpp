@@ -88,15 +88,27 @@ bool has_zeros(std::string_view bytes, std::size_t from) {
     return looked_at > 0;
 }
 
+bool is_utf32(std::string_view bytes) {
+    return bytes.starts_with("\xFF\xFE\0\0"sv) || bytes.starts_with("\0\0\xFE\xFF"sv);
+}
+
+bool has_utf16_mark(std::string_view bytes) {
+    return bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF");
+}
+
 }  // namespace
+
+bool is_utf16(std::string_view bytes) {
+    return !is_utf32(bytes) && (has_utf16_mark(bytes) || has_zeros(bytes, 1) || has_zeros(bytes, 0));
+}
 
 Utf8Text utf8_text(std::string_view bytes) {
     Utf8Text text;
-    if (bytes.starts_with("\xFF\xFE\0\0"sv) || bytes.starts_with("\0\0\xFE\xFF"sv)) {
+    if (is_utf32(bytes)) {
         text.error = "is UTF-32 text: expected UTF-8";
         return text;
     }
-    if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) {
+    if (has_utf16_mark(bytes)) {
         text.converted = from_utf16(bytes.substr(2), bytes[0] == '\xFF' ? 0 : 1);
     } else if (has_zeros(bytes, 1) || has_zeros(bytes, 0)) {
         text.converted = from_utf16(bytes, has_zeros(bytes, 1) ? 0 : 1);

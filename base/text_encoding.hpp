@@ -16,8 +16,10 @@ struct Utf8Text {
     [[nodiscard]] std::string_view view() const noexcept { return converted.empty() ? given : converted; }
 };
 
-/// Reads UTF-8, UTF-16 (with a byte order mark, or if every other one of the first bytes is zero), and Latin-1 where
-/// bytes are not UTF-8.
+/// Whether bytes are UTF-16: they have its byte order mark, or every other one of the first is zero.
+[[nodiscard]] DOWNWASH_EXPORT bool is_utf16(std::string_view bytes);
+
+/// Reads UTF-8, UTF-16, and Latin-1 where bytes are not UTF-8.
 /// @param bytes must outlive the result
 [[nodiscard]] DOWNWASH_EXPORT Utf8Text utf8_text(std::string_view bytes);
 

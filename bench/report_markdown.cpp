@@ -242,14 +242,20 @@ class Document {
             "that "
             "fail, of those whose flight held\nin the nominal world. Parameters that let no plan fail are left "
             "out.\n\n");
-        heads({"problem", "planner", "parameter", "at 2 %", "at 98 %"});
+        bool is_first = true;
         for (const CellFigures& cell : report_.cells) {
             for (const ParameterFigures& of : cell.in_worlds.alone) {
                 if (of.failed_low + of.failed_high > 0) {
+                    if (std::exchange(is_first, false)) {
+                        heads({"problem", "planner", "parameter", "at 2 %", "at 98 %"});
+                    }
                     row(experiment(cell.experiment), planner(cell.planner), of.parameter,
                         fmt::format("{}/{}", of.failed_low, of.plans), fmt::format("{}/{}", of.failed_high, of.plans));
                 }
             }
+        }
+        if (is_first) {
+            add("None lets a plan fail.\n");
         }
         add("\n");
     }

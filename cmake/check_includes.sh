@@ -10,10 +10,11 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 # and the random numbers of worlds.
 judge_may='controllers/actuation controllers/aided_law controllers/aids controllers/axes controllers/cascaded_pid
 controllers/configuration controllers/control_law controllers/model_inversion controllers/plan controllers/planar_lyapunov
-controllers/reference_point controllers/reference_segment controllers/rest controllers/space_law controllers/space_reference dynamics/lane_vector
+controllers/reference_point controllers/reference_segment controllers/rest controllers/space_axes controllers/space_law controllers/space_limits
+controllers/space_reference controllers/space_segment controllers/yaw_mode dynamics/lane_vector
 dynamics/plant dynamics/plant_model dynamics/slipstreams dynamics/space_model dynamics/space_plant dynamics/plant_state simulation/contact_goal simulation/flight_memory simulation/flight_model simulation/flight_sums simulation/goal simulation/noise
 simulation/pose simulation/robot simulation/robot_uncertainty simulation/space_goal simulation/space_robot simulation/space_touch
-simulation/space_world_description simulation/tick_model simulation/uncertainty
+simulation/space_world_description simulation/space_world_parameters simulation/tick_model simulation/uncertainty
 simulation/vehicle_state simulation/world simulation/world_numbers simulation/world_parameters'
 
 # The folders of modules: headers are included by the last part of their names.

@@ -11,6 +11,7 @@ namespace downwash {
 /// What kind of coordinate an axis is.
 enum class AxisGroup : std::uint8_t {
     translation,  ///< a coordinate of the multirotor's centre of mass [m]
+    yaw,          ///< the angle about the vertical [rad]
     joint,        ///< an angle of the arm [rad]
 };
 

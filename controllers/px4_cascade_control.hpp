@@ -37,6 +37,32 @@ T rate_action(const SpaceRateGains& gains, const T& error, const T& integral, co
            T(gains.kd) * change_per_s;
 }
 
+/// Position to velocity to acceleration: what the outer loops ask for.
+/// @param[out] velocity_error [m/s]   @param[out] acceleration world axes [m/s2]
+template <class T, int n>
+[[gnu::always_inline]] inline void ask_accelerations(const Px4Cascade& law, const dynamics::SpaceState<T, n>& seen,
+                                                     const Px4Cascade::Memory<T, n>& memory,
+                                                     const BasicSpacePoint<T, n>& reference, double tick_s,
+                                                     T velocity_error[3], T acceleration[3]) {
+    const T per_tick(1 / tick_s);
+    T velocity_wanted[3];
+    for (int i = 0; i < 3; ++i) {
+        velocity_wanted[i] = reference.velocity[i] + T(i == space::z ? law.height_p_1_s : law.position_p_1_s) *
+                                                         (reference.position[i] - seen.q[i]);
+    }
+    const dynamics::LaneVector<T> level =
+        limited_length(dynamics::LaneVector<T>{velocity_wanted[0], velocity_wanted[1], T(0)}, law.max_speed_m_s);
+    velocity_wanted[0] = level.x;
+    velocity_wanted[1] = level.y;
+    velocity_wanted[2] = lane::clamp(velocity_wanted[2], T(-law.max_descent_m_s), T(law.max_climb_m_s));
+    for (int i = 0; i < 3; ++i) {
+        velocity_error[i] = velocity_wanted[i] - seen.u[i];
+        acceleration[i] = reference.acceleration[i] + rate_action(i == space::z ? law.vertical_velocity : law.velocity,
+                                                                  velocity_error[i], memory.velocity_integral[i],
+                                                                  per_tick * (seen.u[i] - memory.previous_velocity[i]));
+    }
+}
+
 /// The joint accelerations that torques give while the multirotor stands still: the arm's own inertia, eliminated from
 /// the last joint to the first.
 template <class T, int n>
@@ -113,25 +139,8 @@ T Px4Cascade::control(const SpaceLawModel<n>& nominal, const dynamics::SpaceStat
     const T per_tick(1 / tick_s);
     const dynamics::LaneRotation<T> attitude = dynamics::rotation_of(q + 3);
 
-    // Position to velocity to acceleration.
-    T velocity_wanted[3];
-    for (int i = 0; i < 3; ++i) {
-        velocity_wanted[i] =
-            reference.velocity[i] + T(i == space::z ? height_p_1_s : position_p_1_s) * (reference.position[i] - q[i]);
-    }
-    const LaneVector<T> level =
-        controllers::limited_length(LaneVector<T>{velocity_wanted[0], velocity_wanted[1], T(0)}, max_speed_m_s);
-    velocity_wanted[0] = level.x;
-    velocity_wanted[1] = level.y;
-    velocity_wanted[2] = lane::clamp(velocity_wanted[2], T(-max_descent_m_s), T(max_climb_m_s));
     T velocity_error[3], acceleration[3];
-    for (int i = 0; i < 3; ++i) {
-        velocity_error[i] = velocity_wanted[i] - u[i];
-        acceleration[i] =
-            reference.acceleration[i] + controllers::rate_action(i == space::z ? vertical_velocity : velocity,
-                                                                 velocity_error[i], memory.velocity_integral[i],
-                                                                 per_tick * (u[i] - memory.previous_velocity[i]));
-    }
+    controllers::ask_accelerations(*this, seen, memory, reference, tick_s, velocity_error, acceleration);
 
     // Acceleration to thrust: the direction counts with the weight alone, its length makes up for the tilt.
     const T gravity(standard_gravity_m_s2);

@@ -55,6 +55,29 @@ Px4Cascade cascade_gains_for(double rotor_time_constant_s, const SpaceBandwidths
     return law;
 }
 
+ModelInversion planar_gains_for(double rotor_time_constant_s, const SpaceBandwidths& bandwidths) {
+    const SpaceInversion space = gains_for(rotor_time_constant_s, bandwidths);
+    ModelInversion law;
+    law.position_kp = space.horizontal.kp_1_s2;
+    law.position_kd = space.horizontal.kd_1_s;
+    law.position_ki = space.horizontal.ki_1_s3;
+    law.height_kp = space.height.kp_1_s2;
+    law.height_kd = space.height.kd_1_s;
+    law.height_ki = space.height.ki_1_s3;
+    law.arm_kp = space.joint.kp_1_s2;
+    law.arm_kd = space.joint.kd_1_s;
+    law.arm_ki = space.joint.ki_1_s3;
+    law.attitude_kp = space.attitude_kp_1_s;
+    law.attitude_rate_kp = space.rate_kp_1_s;
+    law.attitude_rate_ki = space.rate_ki_1_s2;
+    law.pitch_rate_filter_s = space.direction_rate_filter_s;
+    law.rotor_lead = rotor_time_constant_s > 0 ? space.rotor_lead : 0;
+    if (space.observer_gain_1_s > 0) {
+        law.aids.observer = controllers::DisturbanceObserver{space.observer_gain_1_s};
+    }
+    return law;
+}
+
 SpaceInversion from_planar(const ModelInversion& planar) {
     const auto axis = [&](int i) {
         const ModelInversion::AxisGains gains = planar.axis_gains(i);

@@ -37,6 +37,10 @@ template <int n>
 [[nodiscard]] DOWNWASH_EXPORT Px4Cascade cascade_gains_for(double rotor_time_constant_s,
                                                            const SpaceBandwidths& bandwidths);
 
+/// The gains of the planar model inversion for the same bandwidths: those of gains_for(), x, z, pitch and arm.
+[[nodiscard]] DOWNWASH_EXPORT ModelInversion planar_gains_for(double rotor_time_constant_s,
+                                                              const SpaceBandwidths& bandwidths);
+
 /// The law that flies in the plane of motion, x and z, as the planar one does. What the plane does not know has the
 /// gains of what is nearest: y those of x, roll those of pitch. The pitch rate has no limit.
 [[nodiscard]] DOWNWASH_EXPORT SpaceInversion from_planar(const ModelInversion& planar);

@@ -11,6 +11,26 @@
 // The law of SpaceInversion (docs/model.md 5.9).
 
 namespace downwash {
+namespace controllers {
+
+/// What the position loops of a law ask for.
+/// @param[out] error of the position [m]   @param[out] wanted accelerations, world axes [m/s2]
+template <class T, int n>
+[[gnu::always_inline]] inline void ask_accelerations(const SpaceInversion& law, const dynamics::SpaceState<T, n>& seen,
+                                                     const SpaceInversion::Memory<T, n>& memory,
+                                                     const BasicSpacePoint<T, n>& reference, double /*tick_s*/,
+                                                     T error[3], T wanted[3]) {
+    for (int i = 0; i < 3; ++i) {
+        const SpaceLoopGains& gains = i == space::z ? law.height : law.horizontal;
+        error[i] = reference.position[i] - seen.q[i];
+        wanted[i] = reference.acceleration[i] + T(gains.kd_1_s) * (reference.velocity[i] - seen.u[i]) +
+                    T(gains.kp_1_s2) * error[i] +
+                    integral_action(gains.ki_1_s3, gains.integral_limit, memory.position_integral[i]);
+    }
+}
+
+}  // namespace controllers
+
 template <class T, int n>
 SpaceInversion::Memory<T, n> SpaceInversion::rested(const SpaceLawModel<n>& nominal,
                                                     const dynamics::SpaceState<T, n>& state, double tick_s) const {
@@ -53,13 +73,7 @@ T SpaceInversion::control(const SpaceLawModel<n>& nominal, const dynamics::Space
 
     // Position and joint PID: the accelerations to impose.
     T wanted[3], error[3];
-    for (int i = 0; i < 3; ++i) {
-        const SpaceLoopGains& gains = i == space::z ? height : horizontal;
-        error[i] = reference.position[i] - q[i];
-        wanted[i] = reference.acceleration[i] + T(gains.kd_1_s) * (reference.velocity[i] - u[i]) +
-                    T(gains.kp_1_s2) * error[i] +
-                    controllers::integral_action(gains.ki_1_s3, gains.integral_limit, memory.position_integral[i]);
-    }
+    controllers::ask_accelerations(*this, seen, memory, reference, tick_s, error, wanted);
     T joint_error[room_for<n>]{}, joint_acceleration[room_for<n>]{};
     LaneVector<T> push = e.bias_force_n;  // what arm and velocity products need, body axes
     LaneVector<T> spin = e.bias_torque_nm;

@@ -19,8 +19,8 @@ struct EqualSpaceSteps {
     SpaceState<T, n> operator()(const BasicSpaceModel<P, n>& model, const SpaceState<T, n>& state,
                                 const SpaceCommand<T, n>& command, T dt_s, const Around& around) const {
         const T step_s = count == 1 ? dt_s : dt_s * T(1.0 / count);
-        SpaceState<T, n> next = space_step(model, state, command, step_s, around);
-        for (int i = 1; i < count; ++i) {
+        SpaceState<T, n> next = state;
+        for (int i = 0; i < count; ++i) {  // one call, and so one copy of the step in a kernel
             next = space_step(model, next, command, step_s, around);
         }
         return next;

@@ -9,9 +9,9 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "downwash/judge/placement.hpp"
-#include "downwash/judge/reference.hpp"
 #include "downwash/judge/space_goals.hpp"
 #include "downwash/judge/space_loop.hpp"
+#include "downwash/judge/space_reference.hpp"
 #include "downwash/judge/space_umpire.hpp"
 
 namespace downwash::judge {
@@ -51,8 +51,10 @@ SpaceCoordinates coordinates_of(const SpaceJudgedMotion& motion, int joints) {
     return at;
 }
 
+/// Whether a vehicle is level and does not move.
 bool is_at_rest(const SpaceCoordinates& at) {
-    return at.velocity_m_s.isZero(0) && at.body_rate_rad_s.isZero(0) && at.joint_rates_rad_s.isZero(0);
+    return at.attitude.x() == 0 && at.attitude.y() == 0 && at.velocity_m_s.isZero(0) && at.body_rate_rad_s.isZero(0) &&
+           at.joint_rates_rad_s.isZero(0);
 }
 
 /// The reference that rests where a vehicle is.
@@ -63,29 +65,6 @@ SpacePoint rest_at(const SpaceCoordinates& at) {
     here.position[space::yaw] = std::atan2(ahead.y(), ahead.x());
     std::copy_n(at.joints_rad.data(), at.joints_rad.size(), here.position + space::first_joint);
     return here;
-}
-
-/// The reference at a tick, by the quintic Hermite basis; behind the last knot the last.
-SpacePoint reference_at(const SpacePlan& plan, std::int64_t tick) {
-    const auto after = std::upper_bound(plan.reference.begin(), plan.reference.end(), tick,
-                                        [](std::int64_t t, const SpaceKnot& knot) { return t < knot.tick; });
-    if (after == plan.reference.end() || after == plan.reference.begin()) {
-        return after == plan.reference.begin() ? plan.reference.front().point : plan.reference.back().point;
-    }
-    const SpaceKnot& from = *(after - 1);
-    const double ticks = static_cast<double>(after->tick - from.tick);
-    SpacePoint point;
-    for (int axis = 0; axis < space_axes<max_joints>; ++axis) {
-        const auto course = [&](const SpacePoint& p) {
-            return Course{p.position[axis], p.velocity[axis], p.acceleration[axis]};
-        };
-        const Course at = between(course(from.point), course(after->point), ticks * plan.tick_s,
-                                  static_cast<double>(tick - from.tick) / ticks);
-        point.position[axis] = at.position;
-        point.velocity[axis] = at.velocity;
-        point.acceleration[axis] = at.acceleration;
-    }
-    return point;
 }
 
 /// Whether a vehicle could hover where it is.

@@ -21,8 +21,8 @@ struct SpaceFlightConditions {
     SpaceJudgedMotion start;
     std::int64_t hold_ticks = 0;  ///< hover after the last knot, >= 0; with goals these say it
     bool aero = true;             ///< false: surfaces have no effect on the rotors
-    /// Empty: everything is nominal. In a world a vehicle that starts at rest has hovered there for 20 s before, in
-    /// calm air and with quiet sensors.
+    /// Empty: everything is nominal. In a world a vehicle that starts level and at rest has hovered there for 20 s
+    /// before, in calm air and with quiet sensors.
     std::optional<SpaceWorld> world;
     std::optional<double> energy_budget_j;
     std::vector<SpaceGoal> goals;  ///< that the flight has to meet, one after the other; none: it is `ok` at its end

@@ -39,7 +39,7 @@ std::vector<WorldRun> worst_of(std::vector<WorldRun> runs) {
 
 }  // namespace
 
-WorldRuns statistics_of(std::vector<WorldRun> runs, const std::vector<World>& worlds, const Problem& problem) {
+WorldRuns statistics_of(std::vector<WorldRun> runs, const std::vector<DrawnValues>& drawn) {
     WorldRuns result;
     std::vector<bool> has_failed;
     for (const WorldRun& run : runs) {
@@ -58,22 +58,30 @@ WorldRuns statistics_of(std::vector<WorldRun> runs, const std::vector<World>& wo
         upper_quantiles(figures_of(runs, [](const WorldRun& r) { return r.max_tracking_error_m; }));
     result.energy_j = upper_quantiles(figures_of(runs, [](const WorldRun& r) { return r.energy_j; }));
 
-    const auto rotors = static_cast<int>(problem.robot.rotors.positions_m.size());
-    for (const WorldParameter& parameter : world_parameters()) {
-        std::vector<double> values;
-        values.reserve(worlds.size());
-        for (const World& world : worlds) {
-            values.push_back(parameter.of(world));
-        }
-        const bool varies = std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) != values.end();
-        if (varies && parameter.rotor < rotors) {
-            result.sensitivity.push_back({std::string(parameter.name), rank_correlation(values, clearance),
-                                          share_by_decile(values, has_failed)});
+    for (const DrawnValues& each : drawn) {
+        const std::vector<double>& values = each.of_world;
+        if (std::adjacent_find(values.begin(), values.end(), std::not_equal_to<>()) != values.end()) {
+            result.sensitivity.push_back(
+                {each.parameter, rank_correlation(values, clearance), share_by_decile(values, has_failed)});
         }
     }
     result.worst = worst_of(runs);
     result.runs = std::move(runs);
     return result;
+}
+
+WorldRuns statistics_of(std::vector<WorldRun> runs, const std::vector<World>& worlds, const Problem& problem) {
+    const auto rotors = static_cast<int>(problem.robot.rotors.positions_m.size());
+    std::vector<DrawnValues> drawn;
+    for (const WorldParameter& parameter : world_parameters()) {
+        if (parameter.rotor < rotors) {
+            DrawnValues& values = drawn.emplace_back(DrawnValues{std::string(parameter.name), {}});
+            for (const World& world : worlds) {
+                values.of_world.push_back(parameter.of(world));
+            }
+        }
+    }
+    return statistics_of(std::move(runs), drawn);
 }
 
 std::optional<WorldRuns> fly_in_worlds(const PlanJudge& judge, const Plan& plan, const WorldRunOptions& options) {

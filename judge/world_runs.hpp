@@ -62,8 +62,18 @@ struct WorldRuns {
 [[nodiscard]] DOWNWASH_EXPORT std::optional<WorldRuns> fly_in_worlds(const PlanJudge& judge, const Plan& plan,
                                                                      const WorldRunOptions& options);
 
+/// A number that worlds draw, in each of them.
+struct DrawnValues {
+    std::string parameter;  ///< key below `uncertainty`
+    std::vector<double> of_world;
+};
+
 /// The statistics of flights that were flown.
-/// @param runs at least one   @param worlds that of each of them
+/// @param runs at least one   @param drawn what their worlds differ in; what does not vary says nothing
+[[nodiscard]] DOWNWASH_EXPORT WorldRuns statistics_of(std::vector<WorldRun> runs,
+                                                      const std::vector<DrawnValues>& drawn);
+
+/// The same in the plane. @param worlds that of each run
 [[nodiscard]] DOWNWASH_EXPORT WorldRuns statistics_of(std::vector<WorldRun> runs, const std::vector<World>& worlds,
                                                       const Problem& problem);
 

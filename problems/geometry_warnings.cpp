@@ -246,13 +246,31 @@ void add_surface_warnings(const Mesh& mesh, const SurfaceFacts& facts, const std
                                       : std::to_string(sheets) + " of its " + std::to_string(facts.pieces) +
                                             " pieces " + (sheets == 1 ? "is a sheet" : "are sheets");
         const std::size_t shared = shared_edges(*mesh.surface);
-        const std::string remedy = shared == 0 ? "close it if it is meant to be solid"
-                                               : "three triangles or more meet at " + std::to_string(shared) +
-                                                     " of these edges: write a wall between two rooms once for each";
+        const std::optional<Vector3> junction = shared == 0 ? t_junction(*mesh.surface) : std::nullopt;
+        const std::string remedy =
+            shared > 0 ? "three triangles or more meet at " + std::to_string(shared) +
+                             " of these edges: write a wall between two rooms once for each"
+            : junction ? "a corner of other triangles lies on such an edge at " + text_of(*junction, 7) +
+                             " (a T-junction): split edges at such corners if it is meant to be solid"
+                       : "close it if it is meant to be solid";
         warnings.push_back({key, "'" + file + "' is open at " + std::to_string(facts.open_edges) +
                                      (facts.open_edges == 1 ? " edge" : " edges, one of them") + " near " +
                                      text_of(facts.open_place, 7) + " in the file: " + which +
                                      " with nothing inside; " + remedy});
+    }
+}
+
+/// Of a closed shell whose triangles face both ways: beside or around others it may be the wall of a cavity.
+void add_turned_warning(const Mesh& mesh, const SurfaceFacts& facts, const std::string& key,
+                        std::vector<KeyError>& warnings) {
+    constexpr double near_tie = 1. / 3;
+    if (facts.solid_pieces < 2) {
+        return;
+    }
+    if (const double share = most_turned(*mesh.surface); share >= near_tie) {
+        warnings.push_back({key, "'" + mesh.file + "' has a piece in which " + rounded(100 * share) +
+                                     " % of the triangles face the other way than the rest: whether it is solid or a "
+                                     "cavity is a guess; let all its triangles face away from what is solid"});
     }
 }
 
@@ -293,6 +311,7 @@ std::vector<KeyError> geometry_warnings(const ProblemCheck& check) {
             "environment.obstacles[" + std::to_string(i) + "]" + (mesh != nullptr ? ".mesh.file" : ".octomap.file");
         if (mesh != nullptr && told.insert(mesh->surface.get()).second) {
             add_surface_warnings(*mesh, check.scene()->facts(i), key, warnings);
+            add_turned_warning(*mesh, check.scene()->facts(i), key, warnings);
         }
         if (const auto* octomap = std::get_if<Octomap>(&obstacles[i].shape)) {
             add_unseen_warning(*octomap, key, warnings);

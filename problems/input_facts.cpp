@@ -43,6 +43,10 @@ InputFacts input_facts(const Problem& problem, const Scene& scene) {
     return all;
 }
 
+SpaceInputFacts input_facts(const SpaceProblem& problem, const Scene& scene) {
+    return {geometry_inputs(scene), {problem.robot.name, space_robot_facts(problem.robot)}, data_facts(problem.aero)};
+}
+
 const char* surface_name(const SurfaceFacts& surface) {
     return surface.solid_pieces == surface.pieces ? "solid" : surface.solid_pieces == 0 ? "sheet" : "mixed";
 }

@@ -8,6 +8,7 @@
 #include "downwash/problems/data_facts.hpp"
 #include "downwash/problems/geometry_facts.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/space_problem.hpp"
 #include "downwash/scene/shapes.hpp"
 #include "downwash/simulation/robot_facts.hpp"
 #include "downwash/simulation/space_robot_facts.hpp"
@@ -45,11 +46,20 @@ struct SpaceRobotInput {
     SpaceRobotFacts facts;
 };
 
+/// What was read for a problem in space.
+struct SpaceInputFacts {
+    std::vector<GeometryInput> geometry;
+    SpaceRobotInput robot;
+    std::vector<DataFacts> data;
+};
+
 /// Every mesh and octree of a scene.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<GeometryInput> geometry_inputs(const Scene& scene);
 
 /// @param scene of the problem   @pre problem_errors(problem) is empty
 [[nodiscard]] DOWNWASH_EXPORT InputFacts input_facts(const Problem& problem, const Scene& scene);
+/// @param scene of the problem   @pre space_problem_errors(problem) is empty
+[[nodiscard]] DOWNWASH_EXPORT SpaceInputFacts input_facts(const SpaceProblem& problem, const Scene& scene);
 
 /// "solid", "sheet" or, with pieces of both kinds, "mixed".
 [[nodiscard]] DOWNWASH_EXPORT const char* surface_name(const SurfaceFacts& surface);

@@ -13,8 +13,8 @@
 #include "downwash/controllers/space_limits.hpp"
 #include "downwash/controllers/yaw_mode.hpp"
 #include "downwash/problems/problem.hpp"
-#include "downwash/simulation/space_goal.hpp"
 #include "downwash/scene/shapes.hpp"
+#include "downwash/simulation/space_goal.hpp"
 #include "downwash/simulation/space_robot.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 

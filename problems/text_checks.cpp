@@ -4,6 +4,7 @@
 #include <string>
 
 #include "downwash/base/text.hpp"
+#include "downwash/base/text_encoding.hpp"
 #include "downwash/problems/yaml_node.hpp"
 
 namespace downwash::problems {
@@ -27,6 +28,9 @@ void check_text(std::string_view text) {
     if (text.size() > largest_document) {
         throw YamlError(
             {}, "is larger than " + std::to_string(largest_document / 1024) + " KiB: expected a problem or robot file");
+    }
+    if (is_utf16(text)) {
+        throw YamlError({}, "is UTF-16 text: expected YAML in UTF-8; save it in that encoding");
     }
     if (separators_in(text) > most_separators) {
         throw YamlError({}, "has more than " + std::to_string(most_separators) +

@@ -45,13 +45,15 @@ bool names(std::string_view condition, std::string_view name) {
     return false;
 }
 
-/// What a group may be that nobody has thought about yet: a law whose gains all have defaults.
+/// How to come by a group that nobody has thought about yet: a law whose gains all have defaults, or the program's own
+/// proposal.
 template <class Model>
 std::string to_begin_with(std::string_view path) {
-    const bool has_such_a_law = !std::is_same_v<Model, SpaceProblem>;
-    return has_such_a_law && (path == "controller" || path == "robot.controller")
-               ? ", to begin with {type: cascaded-pid}"
-               : "";
+    if (path != "controller" && path != "robot.controller") {
+        return "";
+    }
+    return std::is_same_v<Model, SpaceProblem> ? "; `downwash margins ROBOT --design` prints one for this robot"
+                                               : ", to begin with {type: cascaded-pid}";
 }
 
 }  // namespace
@@ -157,7 +159,7 @@ void TreeReader<Model>::read_keys(Group group) {
         const std::string name(last_name(parameter->path));
         if (group.entries.contains(name)) {
             read_parameter(group, *parameter);
-        } else if (parameter->required && !is_undecided(group, *parameter) &&
+        } else if (is_required(*parameter) && !is_undecided(group, *parameter) &&
                    (!parameter->applies || parameter->applies(model_, group.index)) &&
                    std::count(group.meant.begin(), group.meant.end(), name) == 0) {
             report(joined(group.key, name), group.mark,
@@ -286,6 +288,14 @@ bool TreeReader<Model>::is_undecided(const Group& group, const Parameter<Model>&
         const bool is_wrong = other->kind == ParameterKind::choice && wrong_.touch(joined(group.key, name));
         return (is_misspelt || is_wrong) && names(parameter.condition, name);
     });
+}
+
+template <class Model>
+bool TreeReader<Model>::is_required(const Parameter<Model>& parameter) const {
+    const auto is_below = [&](const std::string& path) {
+        return parameter.path == path || parameter.path.starts_with(path + ".");
+    };
+    return parameter.required && !(may_lack_ && is_below(*may_lack_));
 }
 
 template <class Model>

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "downwash/base/checks.hpp"
@@ -30,6 +31,9 @@ class TreeReader {
 
     /// From now on leaves out keys that have no meaning beside the others, which are errors otherwise.
     void leave_out_inapplicable() { leaves_out_inapplicable_ = true; }
+
+    /// From now on a group that files must have, and what must be in it, may be missing. @param path "robot.controller"
+    void may_lack(std::string path) { may_lack_ = std::move(path); }
 
     [[nodiscard]] const Model& model() const noexcept { return model_; }
     void adjust(const std::function<void(Model&)>& change) { change(model_); }
@@ -73,6 +77,7 @@ class TreeReader {
     void report_unknown(Group& group, const std::string& name, const Mark& mark);
     [[nodiscard]] static std::optional<std::string> number_before_comma(const Group& group, const Mark& mark);
     [[nodiscard]] bool is_undecided(const Group& group, const Parameter<Model>& parameter) const;
+    [[nodiscard]] bool is_required(const Parameter<Model>& parameter) const;
     void check_alternatives(const Group& group);
     void read_parameter(const Group& group, const Parameter<Model>& parameter);
     void read_group(const Parameter<Model>& parameter, const YamlNode& node, const std::string& key,
@@ -97,6 +102,7 @@ class TreeReader {
     };
     std::vector<File> files_;
     bool leaves_out_inapplicable_ = false;
+    std::optional<std::string> may_lack_;
     std::size_t file_ = 0;  ///< The file that is read now.
     std::map<std::string, Place, std::less<>> places_;
     struct Found {

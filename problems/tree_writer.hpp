@@ -63,6 +63,12 @@ class TreeWriter {
         write_keys("", 0, "");
         return out_;
     }
+    /// A group at the top alone, with its key.
+    [[nodiscard]] std::string written(const std::string& group) {
+        out_ = group + ":\n";
+        write_keys(group, 0, "  ");
+        return out_;
+    }
 
  private:
     using Row = Parameter<Model>;

@@ -80,8 +80,8 @@ std::optional<YamlError> misfit<Problem>(const std::string& path, const YamlNode
                               : YamlError(keys.space->mark,
                                           "environment.bounds.y_m makes this a problem in space, and plans are not "
                                           "searched for there yet: `downwash check` reads it, and `downwash execute "
-                                          "--plan` flies a given reference; without y_m it is a problem in a vertical "
-                                          "plane");
+                                          "--plan` and `downwash validate --plan` fly a given reference; without y_m "
+                                          "it is a problem in a vertical plane");
         }
     }
     if (path == "robot") {

@@ -1,5 +1,7 @@
 #include "downwash/results/claims.hpp"
 
+#include <utility>
+
 #include "downwash/results/order_reader.hpp"
 #include "downwash/results/plan_reader.hpp"
 #include "downwash/results/solution_document.hpp"
@@ -10,7 +12,8 @@ namespace {
 using problems::JsonReader;
 using problems::Node;
 
-void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaims>& into) {
+/// @param is_in_space whether the flight may have no goal error
+void read_flight(JsonReader& reader, const Node& root, bool is_in_space, std::optional<FlightClaims>& into) {
     const auto node = reader.optional_group(root, "execution");
     if (!node) {
         return;
@@ -32,7 +35,9 @@ void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaim
     flight.energy_j = amount("energy_j");
     flight.duration_s = amount("duration_s");
     flight.cost = amount("cost");
-    flight.goal_error_m = amount("goal_error_m");
+    if (!is_in_space || JsonReader::member(*node, "goal_error_m")) {
+        flight.goal_error_m = amount("goal_error_m");
+    }
     if (const auto world = JsonReader::member(*node, "world"); world && world->json->is_object()) {
         flight.world = FlightClaims::WorldIndex{};
         reader.read_count(*world, "index", flight.world->index);
@@ -65,8 +70,28 @@ Claims read_claims(const std::string& path, const Problem& problem) {
         claims.plan = std::move(text.plan);
         claims.waypoints = std::move(text.waypoints);
         claims.order = problems::read_order(reader, root, problem);
-        read_flight(reader, root, claims.flight);
+        read_flight(reader, root, false, claims.flight);
         read_certificate(reader, root, claims.certified_share);
+    });
+    return claims;
+}
+
+SpaceClaims read_claims(const std::string& path, const SpaceProblem& problem) {
+    SpaceClaims claims;
+    claims.objective = problem.planner.objective;
+    claims.seed = problem.planner.seed;
+    problems::read_document(path, [&](JsonReader& reader, const Node& root) {
+        problems::read_objective(reader, root, claims.objective);
+        reader.read_count(root, "seed", claims.seed);
+        problems::SpacePlanText text = problems::read_plan(reader, root, problem);
+        claims.plan = std::move(text.plan);
+        claims.waypoints = std::move(text.waypoints);
+        claims.has_waypoints = text.waypoints_node.has_value();
+        read_flight(reader, root, true, claims.flight);
+        if (const auto node = reader.optional_group(root, "execution")) {
+            const auto cost = JsonReader::member(*node, "cost");
+            claims.has_cost = cost && !cost->json->is_null();
+        }
     });
     return claims;
 }

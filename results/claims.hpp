@@ -7,7 +7,9 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/plan.hpp"
+#include "downwash/controllers/space_reference.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/space_problem.hpp"
 #include "downwash/problems/visit_order.hpp"
 
 namespace downwash {
@@ -41,5 +43,19 @@ struct Claims {
 /// @throws ProblemFileError with every error: no solution file, no plan in it, a reference off the grid of control
 /// ticks
 [[nodiscard]] DOWNWASH_EXPORT Claims read_claims(const std::string& path, const Problem& problem);
+
+/// The same of a plan in space.
+struct SpaceClaims {
+    CostFunction objective;
+    std::uint64_t seed = 1;
+    SpacePlan plan;
+    std::vector<SpacePoint> waypoints;   ///< at rest
+    bool has_waypoints = false;          ///< a plan written by hand need not have any
+    std::optional<FlightClaims> flight;  ///< its goal error and cost are those of the file, 0 where it has none
+    bool has_cost = false;               ///< whether the file says what the flight costs
+};
+
+/// Reads a solution file in space without comparing its parts. @throws ProblemFileError as above
+[[nodiscard]] DOWNWASH_EXPORT SpaceClaims read_claims(const std::string& path, const SpaceProblem& problem);
 
 }  // namespace downwash

@@ -74,6 +74,22 @@ Json robot_json(const RobotInput& robot) {
     return json;
 }
 
+Json robot_json(const SpaceRobotInput& robot) {
+    const SpaceRobotFacts& facts = robot.facts;
+    Json joints_deg = Json::array();
+    for (const double joint_rad : facts.hover_joints_rad) {
+        joints_deg.push_back(degrees(joint_rad));
+    }
+    return {{"robot", robot.name},
+            {"mass_kg", rounded(facts.mass_kg)},
+            {"joints", facts.joints},
+            {"thrust_to_weight", rounded(facts.thrust_to_weight)},
+            {"reach_m", rounded(facts.reach_m)},
+            {"hover_share", rounded(facts.hover_share)},
+            {"hover_rotor", facts.hover_rotor + 1},
+            {"hover_joints_deg", std::move(joints_deg)}};
+}
+
 Json data_json(const DataFacts& data) {
     Json columns = Json::array();
     for (const CsvColumn& column : data.csv.used) {
@@ -95,6 +111,22 @@ Json data_json(const DataFacts& data) {
             {"other_columns", data.csv.others}};
 }
 
+template <class Facts>
+Json all_json(const Facts& inputs) {
+    const auto named_alone = [](Json json) {
+        json["file"] = std::filesystem::path(json["file"].template get<std::string>()).filename().string();
+        return json;
+    };
+    Json geometry = Json::array(), data = Json::array();
+    for (const GeometryInput& each : inputs.geometry) {
+        geometry.push_back(named_alone(geometry_json(each)));
+    }
+    for (const DataFacts& each : inputs.data) {
+        data.push_back(named_alone(data_json(each)));
+    }
+    return {{"geometry", std::move(geometry)}, {"robot", robot_json(inputs.robot)}, {"data", std::move(data)}};
+}
+
 }  // namespace
 
 std::string geometry_document(const GeometryInput& geometry) {
@@ -106,20 +138,7 @@ std::string robot_document(const RobotInput& robot) {
 }
 
 std::string robot_document(const SpaceRobotInput& robot) {
-    const SpaceRobotFacts& facts = robot.facts;
-    Json joints_deg = Json::array();
-    for (const double joint_rad : facts.hover_joints_rad) {
-        joints_deg.push_back(degrees(joint_rad));
-    }
-    return Json{{"robot", robot.name},
-                {"mass_kg", rounded(facts.mass_kg)},
-                {"joints", facts.joints},
-                {"thrust_to_weight", rounded(facts.thrust_to_weight)},
-                {"reach_m", rounded(facts.reach_m)},
-                {"hover_share", rounded(facts.hover_share)},
-                {"hover_rotor", facts.hover_rotor + 1},
-                {"hover_joints_deg", std::move(joints_deg)}}
-        .dump();
+    return robot_json(robot).dump();
 }
 
 std::string data_document(const DataFacts& data) {
@@ -127,18 +146,11 @@ std::string data_document(const DataFacts& data) {
 }
 
 Json inputs_json(const InputFacts& inputs) {
-    const auto named_alone = [](Json json) {
-        json["file"] = std::filesystem::path(json["file"].get<std::string>()).filename().string();
-        return json;
-    };
-    Json geometry = Json::array(), data = Json::array();
-    for (const GeometryInput& each : inputs.geometry) {
-        geometry.push_back(named_alone(geometry_json(each)));
-    }
-    for (const DataFacts& each : inputs.data) {
-        data.push_back(named_alone(data_json(each)));
-    }
-    return {{"geometry", std::move(geometry)}, {"robot", robot_json(inputs.robot)}, {"data", std::move(data)}};
+    return all_json(inputs);
+}
+
+Json inputs_json(const SpaceInputFacts& inputs) {
+    return all_json(inputs);
 }
 
 }  // namespace downwash

@@ -11,5 +11,6 @@ namespace downwash {
 /// All that was read, for solution.json: files by their names alone, so that a run of the same problem elsewhere says
 /// the same.
 [[nodiscard]] nlohmann::ordered_json inputs_json(const InputFacts& inputs);
+[[nodiscard]] nlohmann::ordered_json inputs_json(const SpaceInputFacts& inputs);
 
 }  // namespace downwash

@@ -44,6 +44,13 @@ class JsonReader {
         }
     }
     [[nodiscard]] const std::vector<KeyError>& errors() const noexcept { return errors_; }
+    /// Notes what is no error, but likely not meant.
+    void warn(const Node& node, const std::string& message) {
+        if (warnings_.size() < max_errors) {
+            warnings_.push_back({node.key, message});
+        }
+    }
+    [[nodiscard]] const std::vector<KeyError>& warnings() const noexcept { return warnings_; }
     [[nodiscard]] bool has_enough() const noexcept { return errors_.size() >= max_errors; }
 
     /// The member of a group, null included; nothing when it is missing.
@@ -187,7 +194,7 @@ class JsonReader {
     }
 
  private:
-    std::vector<KeyError> errors_;
+    std::vector<KeyError> errors_, warnings_;
 };
 
 }  // namespace downwash::problems

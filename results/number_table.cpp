@@ -1,6 +1,9 @@
 #include "downwash/results/number_table.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "downwash/base/csv_reader.hpp"
@@ -31,6 +34,25 @@ void NumberTable::add_row(const std::vector<double>& numbers) {
 const std::vector<double>* NumberTable::find(std::string_view name) const {
     const auto found = std::find(names.begin(), names.end(), name);
     return found == names.end() ? nullptr : &columns[static_cast<std::size_t>(found - names.begin())];
+}
+
+std::string csv_text(const NumberTable& table) {
+    constexpr std::size_t typical_number = 20;
+    std::string text;
+    text.reserve((table.rows() + 1) * table.columns.size() * typical_number);
+    for (const std::string& name : table.names) {
+        text += (text.empty() ? "" : ",") + name;
+    }
+    text += '\n';
+    for (std::size_t row = 0; row < table.rows(); ++row) {
+        for (std::size_t i = 0; i < table.columns.size(); ++i) {
+            const double number = table.columns[i][row];
+            char digits[32];
+            text.append(digits, std::isnan(number) ? digits : std::to_chars(digits, std::end(digits), number).ptr);
+            text += i + 1 < table.columns.size() ? ',' : '\n';
+        }
+    }
+    return text;
 }
 
 NumberTable read_number_table(std::string_view text, const std::string& file,

@@ -22,6 +22,10 @@ struct NumberTable {
     [[nodiscard]] DOWNWASH_EXPORT const std::vector<double>* find(std::string_view name) const;
 };
 
+/// The text of such a file: a line of names, then the rows. Every number is the shortest that reads back as the very
+/// same; a cell of NaN is empty.
+[[nodiscard]] DOWNWASH_EXPORT std::string csv_text(const NumberTable& table);
+
 /// Reads comma separated numbers below a line of column names, such as trajectory.csv and tree.csv.
 /// @param file named in messages
 /// @param required names that must be among the columns

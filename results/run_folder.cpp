@@ -5,6 +5,7 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/space_problem_writer.hpp"
 
 namespace downwash {
 namespace {
@@ -27,7 +28,9 @@ std::string shown_file(const fs::path& file) {
     return file.empty() ? "an unknown file" : excerpt((file.parent_path().filename() / file.filename()).string());
 }
 
-void require_replaceable(const fs::path& folder, const Problem& problem, const std::string& file) {
+/// @param problem a Problem or SpaceProblem
+template <class AnyProblem>
+void require_replaceable(const fs::path& folder, const AnyProblem& problem, const std::string& file) {
     const std::string& solution = run_file_names().front();
     if (!is_there(folder / solution)) {
         for (const std::string& name : run_file_names()) {
@@ -74,12 +77,16 @@ RunFolder::RunFolder(fs::path path, const Problem& problem, const std::string& p
     }
 }
 
-RunRecord RunFolder::write(const Problem& problem, const std::string& problem_file,
-                           const std::vector<LocatedError>& warnings, const Solution& solution,
-                           const std::optional<InputFacts>& inputs) {
-    const Execution flight = solution.execution.value_or(no_flight(problem.robot));
-    RunRecord record = run_record(problem, solution, flight);
-    auto files = run_files(problem, problem_file, solution, flight, path_, warnings, inputs);
+RunFolder::RunFolder(fs::path path, const SpaceProblem& problem, const std::string& problem_file, bool force)
+    : path_(std::move(path)), whole_(path_, run_file_names()) {
+    if (!force) {
+        require_replaceable(path_, problem, problem_file);
+    }
+}
+
+/// Writes files, and keeps the texts of two of them.
+template <class Record>
+void RunFolder::write_files(std::vector<std::pair<std::string, std::string>>& files, Record& record) {
     whole_.write(files);
     for (auto& [name, content] : files) {
         if (name == "effective.yaml") {
@@ -88,6 +95,24 @@ RunRecord RunFolder::write(const Problem& problem, const std::string& problem_fi
             record.solution_text = std::move(content);
         }
     }
+}
+
+RunRecord RunFolder::write(const Problem& problem, const std::string& problem_file,
+                           const std::vector<LocatedError>& warnings, const Solution& solution,
+                           const std::optional<InputFacts>& inputs) {
+    const Execution flight = solution.execution.value_or(no_flight(problem.robot));
+    RunRecord record = run_record(problem, solution, flight);
+    auto files = run_files(problem, problem_file, solution, flight, path_, warnings, inputs);
+    write_files(files, record);
+    return record;
+}
+
+SpaceRunRecord RunFolder::write(const SpaceProblem& problem, const std::string& problem_file,
+                                const std::vector<LocatedError>& warnings, const SpaceSolution& solution,
+                                const std::optional<SpaceInputFacts>& inputs) {
+    SpaceRunRecord record = run_record(problem, solution);
+    auto files = run_files(problem, problem_file, solution, path_, warnings, inputs);
+    write_files(files, record);
     return record;
 }
 

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "downwash/base/export.hpp"
@@ -35,6 +36,9 @@ class DOWNWASH_EXPORT RunFolder {
     /// files with names of ours that are part of no run
     RunFolder(std::filesystem::path path, const Problem& problem, const std::string& problem_file, bool force);
 
+    /// The same for a flight in space.
+    RunFolder(std::filesystem::path path, const SpaceProblem& problem, const std::string& problem_file, bool force);
+
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
 
     /// Writes effective.yaml, trajectory.csv, tree.csv and solution.json, which replace the run of before, its page
@@ -45,7 +49,16 @@ class DOWNWASH_EXPORT RunFolder {
     RunRecord write(const Problem& problem, const std::string& problem_file, const std::vector<LocatedError>& warnings,
                     const Solution& solution, const std::optional<InputFacts>& inputs = {});
 
+    /// The same for a flight in space, without tree.csv. @return the same run, as read_space_run() would read it
+    /// @pre the solution has an execution
+    SpaceRunRecord write(const SpaceProblem& problem, const std::string& problem_file,
+                         const std::vector<LocatedError>& warnings, const SpaceSolution& solution,
+                         const std::optional<SpaceInputFacts>& inputs = {});
+
  private:
+    template <class Record>
+    void write_files(std::vector<std::pair<std::string, std::string>>& files, Record& record);
+
     std::filesystem::path path_;
     WholeFolder whole_;
 };

@@ -10,8 +10,11 @@
 #include "downwash/base/text.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
+#include "downwash/problems/space_problem_writer.hpp"
 #include "downwash/results/result_limits.hpp"
 #include "downwash/results/solution_file.hpp"
+#include "downwash/results/space_trajectory_csv.hpp"
 #include "downwash/results/trajectory_csv.hpp"
 #include "downwash/results/tree_csv.hpp"
 
@@ -43,7 +46,9 @@ struct Claims {
     FileDigests files;  ///< empty in solutions of former versions
 };
 
-Claims take_solution(const fs::path& file, RunRecord& run) {
+/// @param run a RunRecord or SpaceRunRecord
+template <class Record>
+Claims take_solution(const fs::path& file, Record& run) {
     using Json = nlohmann::json;
     bool is_deep = false;
     const Json solution = Json::parse(
@@ -68,7 +73,7 @@ Claims take_solution(const fs::path& file, RunRecord& run) {
                       text_at(solution, "/problem/sha256")};
     if (const auto files = solution.find("files"); files != solution.end() && files->is_object()) {
         for (const auto& [name, digest] : files->items()) {
-            claims.files[name] = digest.is_string() ? digest.get<std::string>() : "";
+            claims.files[name] = digest.is_string() ? digest.template get<std::string>() : "";
         }
     }
     return claims;
@@ -94,7 +99,8 @@ void check_file(const fs::path& file, const std::string& content, const FileDige
 }
 
 /// The same for the problem in effective.yaml.
-void check_problem(const fs::path& file, const Problem& problem, const Claims& claims) {
+template <class AnyProblem>
+void check_problem(const fs::path& file, const AnyProblem& problem, const Claims& claims) {
     check_digest(file, problem_sha256(problem), claims.problem.sha256);
 }
 
@@ -158,6 +164,31 @@ std::vector<std::string> flight_columns(const Robot& robot) {
     return names;
 }
 
+std::vector<std::string> flight_columns(const SpaceRobot& robot) {
+    SpaceFlight none;
+    none.joints = robot.joints();
+    none.rotor_count = static_cast<int>(robot.plant.rotors.size());
+    none.has_rotor_lag = robot.plant.time_constant_s > 0;
+    return trajectory_table(none).names;
+}
+
+/// Reads solution.json and effective.yaml. @param read_model reads the latter
+template <class Record, class Read>
+Claims read_head(const fs::path& folder, Record& run, const Read& read_model) {
+    std::error_code ignored;
+    if (!fs::is_directory(folder, ignored)) {
+        report(folder, "there is no such folder; expected one that `downwash solve` wrote");
+    }
+    const fs::path solution = folder / solution_name;
+    run.solution_text = text_of(solution, max_solution_bytes);
+    Claims claims = take_solution(solution, run);
+    const fs::path problem = folder / "effective.yaml";
+    run.problem_text = text_of(problem);
+    run.problem = read_model(problem);
+    check_problem(problem, run.problem, claims);
+    return claims;
+}
+
 /// Only the clearance may be empty, where there are no obstacles; time goes on.
 void check_flight(const fs::path& file, const NumberTable& flight) {
     check_numbers(file, flight, "clearance_m");
@@ -167,6 +198,16 @@ void check_flight(const fs::path& file, const NumberTable& flight) {
             throw_at_row(file, flight, row, "t_s is " + to_text(times_s[row]) + ", expected times that rise from 0 on");
         }
     }
+}
+
+/// Reads trajectory.csv. @param columns that it has to have
+NumberTable read_flight(const fs::path& folder, const std::vector<std::string>& columns, const Claims& claims) {
+    const fs::path file = folder / "trajectory.csv";
+    const std::string text = text_of(file);
+    NumberTable flight = read_number_table(text, file.string(), columns);
+    check_flight(file, flight);
+    check_file(file, text, claims.files);
+    return flight;
 }
 
 }  // namespace
@@ -202,35 +243,61 @@ std::vector<std::pair<std::string, std::string>> run_files(const Problem& proble
 }
 
 RunRecord read_run(const fs::path& folder) {
-    std::error_code ignored;
-    if (!fs::is_directory(folder, ignored)) {
-        report(folder, "there is no such folder; expected one that `downwash solve` wrote");
-    }
     RunRecord run;
-    const fs::path solution = folder / solution_name;
-    run.solution_text = text_of(solution, max_solution_bytes);
-    const Claims claims = take_solution(solution, run);
-    const fs::path problem = folder / "effective.yaml";
-    run.problem_text = text_of(problem);
-    run.problem = read_problem(problem);
-    check_problem(problem, run.problem, claims);
+    const Claims claims = read_head(folder, run, [](const fs::path& file) {
+        if (is_space_problem_file(file)) {
+            report(file,
+                   "this is a run in space, which pages, pictures and exports do not show yet: its trajectory.csv "
+                   "holds the flight, with the columns that docs/space_files.md lists");
+        }
+        return read_problem(file);
+    });
     if (claims.has_plan) {
-        Solution read = read_solution(solution.string(), run.problem);
+        Solution read = read_solution((folder / solution_name).string(), run.problem);
         run.plan = std::move(read.plan);
         run.order = std::move(read.order);
     }
-    const fs::path flight = folder / "trajectory.csv";
-    const std::string flight_text = text_of(flight);
-    run.flight = read_number_table(flight_text, flight.string(), flight_columns(run.problem.robot));
-    check_flight(flight, run.flight);
-    check_file(flight, flight_text, claims.files);
+    run.flight = read_flight(folder, flight_columns(run.problem.robot), claims);
     const fs::path tree = folder / "tree.csv";
-    if (fs::exists(tree, ignored)) {
+    if (std::error_code ignored; fs::exists(tree, ignored)) {
         const std::string tree_text = text_of(tree);
         run.tree = read_number_table(tree_text, tree.string(), tree_table({}, run.problem.axes()).names);
         check_tree(tree, run.tree);
         check_file(tree, tree_text, claims.files);
     }
+    return run;
+}
+
+SpaceRunRecord run_record(const SpaceProblem& problem, const SpaceSolution& solution) {
+    SpaceRunRecord run;
+    run.problem = problem;
+    run.status = name_of(solution.status);
+    run.outcome = solution.execution ? name_of(solution.execution->outcome) : "";
+    run.plan = solution.plan;
+    run.flight = solution.execution ? trajectory_table(*solution.execution) : NumberTable();
+    return run;
+}
+
+std::vector<std::pair<std::string, std::string>> run_files(const SpaceProblem& problem, const std::string& problem_file,
+                                                           const SpaceSolution& solution, const fs::path& folder,
+                                                           const std::vector<LocatedError>& warnings,
+                                                           const std::optional<SpaceInputFacts>& inputs) {
+    std::vector<std::pair<std::string, std::string>> files{{"effective.yaml", effective_yaml(problem, folder)},
+                                                           {"trajectory.csv", trajectory_csv(*solution.execution)}};
+    const FileDigests digests{{files[1].first, sha256_hex(files[1].second)}};
+    files.emplace_back(
+        solution_name,
+        solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings, inputs}, digests));
+    return files;
+}
+
+SpaceRunRecord read_space_run(const fs::path& folder) {
+    SpaceRunRecord run;
+    const Claims claims = read_head(folder, run, [](const fs::path& file) { return read_space_problem(file); });
+    if (claims.has_plan) {
+        run.plan = read_solution((folder / solution_name).string(), run.problem).plan;
+    }
+    run.flight = read_flight(folder, flight_columns(run.problem.robot), claims);
     return run;
 }
 
@@ -251,7 +318,11 @@ void require_whole_run(const fs::path& folder) {
         }
     }
     if (const fs::path problem = folder / "effective.yaml"; fs::exists(problem, ignored)) {
-        check_problem(problem, read_problem(problem), claims);
+        if (is_space_problem_file(problem)) {
+            check_problem(problem, read_space_problem(problem), claims);
+        } else {
+            check_problem(problem, read_problem(problem), claims);
+        }
     }
 }
 

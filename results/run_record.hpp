@@ -10,8 +10,10 @@
 #include "downwash/planner/solution.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/space_problem.hpp"
 #include "downwash/results/number_table.hpp"
 #include "downwash/results/solution_file.hpp"
+#include "downwash/results/space_solution_file.hpp"
 
 namespace downwash {
 
@@ -45,8 +47,32 @@ struct RunRecord {
 /// Reads what `solve` or `execute` left in a folder. All files have to be of the same run: solution.json holds digests
 /// of the others.
 /// @throws ProblemFileError or InputError with the place of every error: a file that is missing or is not what they
-/// write
+/// write, or the run is one in space
 [[nodiscard]] DOWNWASH_EXPORT RunRecord read_run(const std::filesystem::path& folder);
+
+/// A finished flight in space: what its folder holds, in memory.
+struct SpaceRunRecord {
+    SpaceProblem problem;       ///< effective.yaml
+    std::string problem_text;   ///< the same as text
+    std::string solution_text;  ///< solution.json
+    std::string status;         ///< as of RunRecord
+    std::string outcome;        ///< as of RunRecord
+    std::optional<SpacePlan> plan;
+    NumberTable flight;  ///< trajectory.csv
+};
+
+/// The record of a flight in space that has just ended; the texts stay empty.
+[[nodiscard]] DOWNWASH_EXPORT SpaceRunRecord run_record(const SpaceProblem& problem, const SpaceSolution& solution);
+
+/// The files that a flight in space leaves in a folder: see above. There is no tree.csv: nothing was searched.
+/// @pre the solution has an execution
+[[nodiscard]] DOWNWASH_EXPORT std::vector<std::pair<std::string, std::string>> run_files(
+    const SpaceProblem& problem, const std::string& problem_file, const SpaceSolution& solution,
+    const std::filesystem::path& folder, const std::vector<LocatedError>& warnings = {},
+    const std::optional<SpaceInputFacts>& inputs = {});
+
+/// Reads what `execute` left in a folder for a problem in space: see read_run(). @throws as read_run()
+[[nodiscard]] DOWNWASH_EXPORT SpaceRunRecord read_space_run(const std::filesystem::path& folder);
 
 /// Which problem a solution.json is of, as it says. What it does not say is empty.
 /// @throws InputError if there is no such file or it is not what they write

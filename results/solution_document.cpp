@@ -57,9 +57,16 @@ Json parse(const std::string& path, const std::string& text) {
     throw_at(path, {}, "nests deeper than the file of a plan does");
 }
 
+/// What was found at a key, with its place in the file.
+LocatedError located(const std::string& path, const std::string& text, const KeyError& found) {
+    const auto place = json_place(text, found.key);
+    return {path, place.line, place.column, found.key.empty() ? found.message : found.key + ": " + found.message};
+}
+
 }  // namespace
 
-void read_document(const std::string& path, const std::function<void(JsonReader&, const Node&)>& read) {
+void read_document(const std::string& path, const std::function<void(JsonReader&, const Node&)>& read,
+                   const std::function<void(const LocatedError&)>& on_warning) {
     const std::string text = read_text(path);
     const Json document = parse(path, text);
     const Node root{&document, ""};
@@ -74,11 +81,14 @@ void read_document(const std::string& path, const std::function<void(JsonReader&
     if (!reader.errors().empty()) {
         std::vector<LocatedError> errors;
         for (const KeyError& error : reader.errors()) {
-            const auto place = json_place(text, error.key);
-            errors.push_back(
-                {path, place.line, place.column, error.key.empty() ? error.message : error.key + ": " + error.message});
+            errors.push_back(located(path, text, error));
         }
         throw ProblemFileError(std::move(errors));
+    }
+    if (on_warning) {
+        for (const KeyError& warning : reader.warnings()) {
+            on_warning(located(path, text, warning));
+        }
     }
 }
 

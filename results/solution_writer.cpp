@@ -1,9 +1,9 @@
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "downwash/base/version.hpp"
 #include "downwash/results/input_json.hpp"
+#include "downwash/results/json_parts.hpp"
 #include "downwash/results/solution_file.hpp"
 
 namespace downwash {
@@ -11,20 +11,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON knows no infinity and no NaN.
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json();
-}
-
-Json number(const std::optional<double>& value) {
-    return value ? number(*value) : Json();
-}
-
 /// The coordinates of a configuration by the names of their axes.
 Json configuration_json(const Configuration& at, std::span<const Axis> axes) {
     Json json;
     for (std::size_t i = 0; i < axes.size(); ++i) {
-        json[std::string(axes[i].position)] = number(at[i]);
+        json[std::string(axes[i].position)] = json_number(at[i]);
     }
     return json;
 }
@@ -35,7 +26,7 @@ Json obstruction_json(const std::optional<Obstruction>& obstruction, std::span<c
     }
     Json json = {{"cause", obstruction->cause}};
     json.update(configuration_json(obstruction->at, axes));
-    json["goal_distance_m"] = number(obstruction->goal_distance_m);
+    json["goal_distance_m"] = json_number(obstruction->goal_distance_m);
     json["obstacles"] = obstruction->obstacles;
     return json;
 }
@@ -48,10 +39,10 @@ Json certificate_json(const std::optional<Certificate>& certificate) {
     for (const WorldSample& each : certificate->worst) {
         worst.push_back({{"world", each.world},
                          {"outcome", name_of(each.outcome)},
-                         {"min_clearance_m", number(each.min_clearance_m)}});
+                         {"min_clearance_m", json_number(each.min_clearance_m)}});
     }
     const auto clearance_m = [&](double quantile_m) {
-        return certificate->worlds > 0 ? number(quantile_m) : Json{};  // of no flight there is none
+        return certificate->worlds > 0 ? json_number(quantile_m) : Json{};  // of no flight there is none
     };
     const auto& clearance = certificate->clearance_m;
     const auto& probability = certificate->failure_probability;
@@ -81,31 +72,31 @@ Json order_json(const VisitOrder& order) {
     Json left_out = Json::array();
     for (const LeftOutTarget& each : order.left_out) {
         left_out.push_back(
-            {{"target", each.target + 1}, {"reason", name_of(each.reason)}, {"energy_j", number(each.energy_j)}});
+            {{"target", each.target + 1}, {"reason", name_of(each.reason)}, {"energy_j", json_number(each.energy_j)}});
     }
     return {{"visits", std::move(visits)},
             {"left_out", std::move(left_out)},
             {"is_best", order.is_best},
             {"legs", order.legs},
-            {"cost_of_legs", number(order.cost_of_legs)}};
+            {"cost_of_legs", json_number(order.cost_of_legs)}};
 }
 
 Json planning_json(const Found& found, const SearchRecord& record, std::span<const Axis> axes) {
     Json improvements = Json::array();
     for (const Improvement& improvement : record.improvements) {
-        improvements.push_back({{"wall_s", number(improvement.wall_s)},
+        improvements.push_back({{"wall_s", json_number(improvement.wall_s)},
                                 {"iteration", improvement.iteration},
-                                {"cost", number(improvement.cost)},
-                                {"flown_cost", number(improvement.flown_cost)}});
+                                {"cost", json_number(improvement.cost)},
+                                {"flown_cost", json_number(improvement.flown_cost)}});
     }
-    return {{"wall_s", number(record.wall_s)},
-            {"map_wall_s", number(record.map_wall_s)},
-            {"flight_wall_s", number(found.flight_wall_s)},
-            {"first_solution_wall_s", number(record.first_solution_wall_s)},
-            {"first_certified_wall_s", number(record.first_certified_wall_s)},
+    return {{"wall_s", json_number(record.wall_s)},
+            {"map_wall_s", json_number(record.map_wall_s)},
+            {"flight_wall_s", json_number(found.flight_wall_s)},
+            {"first_solution_wall_s", json_number(record.first_solution_wall_s)},
+            {"first_certified_wall_s", json_number(record.first_certified_wall_s)},
             {"iterations", record.iterations},
             {"edges_simulated", record.edges_simulated},
-            {"simulated_s", number(record.simulated_s)},
+            {"simulated_s", json_number(record.simulated_s)},
             {"states_checked", record.states_checked},
             {"improvements", std::move(improvements)},
             {"rejected", record.rejected},
@@ -116,7 +107,7 @@ Json planning_json(const Found& found, const SearchRecord& record, std::span<con
               {"failed_certificate", record.candidates.failed_certificate},
               {"worse_stops", record.candidates.worse_stops},
               {"unfinished", record.candidates.unfinished}}},
-            {"nearest_approach_m", number(found.nearest_approach_m)},
+            {"nearest_approach_m", json_number(found.nearest_approach_m)},
             {"obstruction", obstruction_json(found.obstruction, axes)},
             {"goal", found.missed_goal ? Json(*found.missed_goal) : Json()}};
 }
@@ -170,17 +161,17 @@ Json execution_json(const Solution& solution) {
     const Execution& flight = *solution.execution;
     Json goals = Json::array();
     for (const GoalVisit& visit : flight.goals) {
-        goals.push_back({{"met", visit.is_met}, {"error_m", number(visit.error_m)}});
+        goals.push_back({{"met", visit.is_met}, {"error_m", json_number(visit.error_m)}});
     }
     Json execution = {{"aero", flight.aero},
                       {"outcome", name_of(flight.outcome)},
-                      {"min_clearance_m", number(flight.min_clearance_m)},
-                      {"energy_j", number(flight.energy_j)},
-                      {"duration_s", number(flight.duration_s)},
-                      {"cost", number(solution.execution_cost)},
-                      {"max_tracking_error_m", number(flight.max_tracking_error_m)},
-                      {"max_saturation", number(flight.max_saturation)},
-                      {"goal_error_m", number(flight.goal_error_m)},
+                      {"min_clearance_m", json_number(flight.min_clearance_m)},
+                      {"energy_j", json_number(flight.energy_j)},
+                      {"duration_s", json_number(flight.duration_s)},
+                      {"cost", json_number(solution.execution_cost)},
+                      {"max_tracking_error_m", json_number(flight.max_tracking_error_m)},
+                      {"max_saturation", json_number(flight.max_saturation)},
+                      {"goal_error_m", json_number(flight.goal_error_m)},
                       {"goals", std::move(goals)}};
     if (flight.unseen_share) {
         execution["unseen_share"] = *flight.unseen_share;
@@ -190,40 +181,17 @@ Json execution_json(const Solution& solution) {
         execution["contact"] = {{"met", touch.is_met},
                                 {"touched_s", touch.touched_s > 0 ? Json(touch.touched_s) : Json()},
                                 {"left_s", touch.left_s > 0 ? Json(touch.left_s) : Json()},
-                                {"force_n", number(touch.force_n)},
-                                {"force_error_n", number(touch.force_error_n)},
-                                {"peak_force_n", number(touch.peak_force_n)},
-                                {"max_depth_m", number(touch.max_depth_m)},
-                                {"power_w", number(touch.power_w)}};
+                                {"force_n", json_number(touch.force_n)},
+                                {"force_error_n", json_number(touch.force_error_n)},
+                                {"peak_force_n", json_number(touch.peak_force_n)},
+                                {"max_depth_m", json_number(touch.max_depth_m)},
+                                {"power_w", json_number(touch.power_w)}};
     }
     if (solution.execution_world) {
         execution["world"] = {{"index", solution.execution_world->index}, {"seed", solution.execution_world->seed}};
-        execution["lateral_m"] = number(flight.lateral_m);
+        execution["lateral_m"] = json_number(flight.lateral_m);
     }
     return execution;
-}
-
-Json warnings_json(const std::vector<LocatedError>& warnings) {
-    Json list = Json::array();
-    for (const LocatedError& warning : warnings) {
-        list.push_back(
-            {{"file", warning.file}, {"line", warning.line}, {"column", warning.column}, {"message", warning.message}});
-    }
-    return list;
-}
-
-/// A name, or the weights of a sum.
-Json objective_json(const CostFunction& objective) {
-    if (const auto single = objective.single()) {
-        return name_of(*single);
-    }
-    Json weights = Json::object();
-    for (const Objective each : all_objectives) {
-        if (objective.weight(each) > 0) {
-            weights[std::string(name_of(each))] = objective.weight(each);
-        }
-    }
-    return weights;
 }
 
 }  // namespace
@@ -242,7 +210,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"seed", solution.seed},
         {"version", version()},
         {"threads", solution.threads},
-        {"cost", solution.plan ? number(solution.cost) : Json()},
+        {"cost", solution.plan ? json_number(solution.cost) : Json()},
         {"planning", planning_json(solution, solution.planning, problem.axes)},
         {"certificate", certificate_json(solution.certificate)},
         {"plan", plan_json(solution.plan)},
@@ -252,11 +220,12 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
     };
     if (solution.replanned) {
         const Replanned& from = *solution.replanned;
-        document["replanned"] = {{"plan", from.plan},
-                                 {"t_s", from.t_s},
-                                 {"tick", from.tick},
-                                 {"rest", {{"outcome", name_of(from.rest_outcome)}, {"cost", number(from.rest_cost)}}},
-                                 {"same_reference_s", from.same_reference_s ? number(*from.same_reference_s) : Json()}};
+        document["replanned"] = {
+            {"plan", from.plan},
+            {"t_s", from.t_s},
+            {"tick", from.tick},
+            {"rest", {{"outcome", name_of(from.rest_outcome)}, {"cost", json_number(from.rest_cost)}}},
+            {"same_reference_s", from.same_reference_s ? json_number(*from.same_reference_s) : Json()}};
     }
     if (solution.order) {
         document["order"] = order_json(*solution.order);

@@ -177,10 +177,18 @@ std::vector<Neighbour> neighbours_of(const std::vector<Edge>& edges, std::size_t
     return neighbours;
 }
 
+/// Which triangles are turned so that neighbours agree.
+struct Turning {
+    std::vector<bool> is_turned;
+    double largest_share = 0;  ///< of the triangles of a connected part
+};
+
 /// Turns triangles until neighbours agree. Where they cannot, some edge stays out of balance.
-std::vector<bool> turned_to_agree(const std::vector<Neighbour>& neighbours) {
+Turning turned_to_agree(const std::vector<Neighbour>& neighbours) {
     const std::size_t count = neighbours.size() / 3;
-    std::vector<bool> is_turned(count);
+    Turning turning;
+    std::vector<bool>& is_turned = turning.is_turned;
+    is_turned.resize(count);
     std::vector<bool> is_reached(count);
     std::vector<std::uint32_t> part;  // the connected triangles around one, in the order in which they are reached
     for (std::uint32_t start = 0; start < count; ++start) {
@@ -206,9 +214,12 @@ std::vector<bool> turned_to_agree(const std::vector<Neighbour>& neighbours) {
             for (const std::uint32_t triangle : part) {
                 is_turned[triangle] = !is_turned[triangle];
             }
+            turned_count = part.size() - turned_count;
         }
+        turning.largest_share =
+            std::max(turning.largest_share, static_cast<double>(turned_count) / static_cast<double>(part.size()));
     }
-    return is_turned;
+    return turning;
 }
 
 /// What a piece encloses, around one of its corners.
@@ -307,7 +318,9 @@ MeshSides sides_of(const TriangleMesh& surface) {
         return std::any_of(pieces.begin(), pieces.end(), turns);
     };
     if (is_contradictory(sides.is_turned)) {
-        sides.is_turned = turned_to_agree(neighbours_of(edges, count));
+        Turning turning = turned_to_agree(neighbours_of(edges, count));
+        sides.is_turned = std::move(turning.is_turned);
+        sides.most_turned = turning.largest_share;
         if (is_contradictory(sides.is_turned)) {
             sides.kind = SurfaceKind::contradictory;
             return sides;

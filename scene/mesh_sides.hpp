@@ -26,6 +26,7 @@ struct MeshSides {
     std::vector<bool> is_sheet;     ///< whether each triangle belongs to a piece with a rim, or a flat one
     std::vector<bool> is_repeated;  ///< whether each triangle is there already and is to be left out
     SurfaceFacts facts;             ///< without its boxes; the place is one of the surface
+    double most_turned = 0;  ///< the largest share of turned triangles in what neighbours connect, at most a half
 };
 
 /// Corners of equal coordinates are one corner; triangles that come down to an edge do not count. Every piece is looked

@@ -1,27 +1,13 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <span>
 
 #include "downwash/base/export.hpp"
 #include "downwash/simulation/flight_job.hpp"
+#include "downwash/simulation/instructions.hpp"
 
 namespace downwash {
-
-/// Instructions that the flights of a batch are computed with. The results are the same to the last bit.
-enum class Instructions : std::uint8_t {
-    baseline,  ///< what every processor of the architecture has
-    avx2,      ///< x86-64 only
-    avx512,    ///< x86-64 only: AVX-512 F
-};
-
-/// The instructions that this build and this processor have, the widest last.
-[[nodiscard]] DOWNWASH_EXPORT std::span<const Instructions> known_instructions() noexcept;
-/// The widest of the known instructions.
-[[nodiscard]] inline Instructions best_instructions() noexcept {
-    return known_instructions().back();
-}
 
 /// A thread pool that flies jobs side by side, in the lanes of wide registers. Every job ends exactly as if fly() flew
 /// its legs one after the other, whatever the instructions and the number of threads. A lane whose flight ends takes

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "downwash/simulation/lane_rows.hpp"
 #include "downwash/simulation/map_effect.hpp"
 #include "downwash/simulation/motion_reach.hpp"
 #include "downwash/simulation/rule_checks.hpp"
@@ -10,13 +11,6 @@
 // The kernel that flies several edges side by side: plain arrays in, plain arrays out. flight_batch.cpp feeds it.
 
 namespace downwash::simulation {
-
-/// Edges that fly side by side, as many as the widest kernel takes at once.
-inline constexpr int lane_count = 8;
-
-/// A struct of numbers for every lane: [number][lane].
-template <class Struct>
-using LaneRows = double[sizeof(Struct) / sizeof(double)][lane_count];
 
 /// Where the vehicles of all lanes were at one tick.
 struct alignas(64) TrackRow {

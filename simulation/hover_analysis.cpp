@@ -1,15 +1,13 @@
 #include "downwash/simulation/hover_analysis.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
-#include "downwash/base/portable_math.hpp"
 #include "downwash/dynamics/flight_step.hpp"
+#include "downwash/simulation/beyond_model.hpp"
 #include "downwash/simulation/effect_slope.hpp"
 #include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/hover_modes.hpp"
 #include "downwash/simulation/hover_trim.hpp"
 #include "downwash/simulation/rotor_hubs.hpp"
 #include "downwash/simulation/surroundings.hpp"
@@ -26,12 +24,7 @@ constexpr std::array<std::string_view, 6> verdict_names = {"not_flyable", "in_co
 constexpr std::array<std::string_view, 7> limit_names = {"none", "arm_angle", "rotor_thrust", "joint_torque",
                                                          "tilt", "vertical",  "gain"};
 
-/// Nearer to 1 than this a spectral radius is not known to be below: rounding and differences.
-constexpr double radius_slack = 1e-9;
-
 using simulation::state_numbers;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Of a state without older motions, on the stack.
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, state_numbers, state_numbers>;
@@ -75,35 +68,6 @@ Matrix jacobian(const FlightModel& model, const HoverTrim& trim, LinearEffect& e
     return result;
 }
 
-/// Modes that cannot be found, as with gains beyond all measure, count as growing without limit.
-template <class Matrix>
-void find_modes(const Matrix& jacobian, double tick_s, HoverStability& stability) {
-    stability.spectral_radius = infinity;
-    stability.growth_rate_1_s = infinity;
-    stability.growing_modes = static_cast<int>(jacobian.rows());
-    if (!jacobian.allFinite()) {
-        return;
-    }
-    const Eigen::EigenSolver<Matrix> solver(jacobian, false);
-    if (solver.info() != Eigen::Success || !solver.eigenvalues().allFinite()) {
-        return;
-    }
-    stability.growing_modes = 0;
-    double largest = 0;  // squared modulus
-    for (Eigen::Index i = 0; i < jacobian.rows(); ++i) {
-        const double re = solver.eigenvalues()[i].real();
-        const double im = solver.eigenvalues()[i].imag();
-        const double squared = re * re + im * im;
-        stability.growing_modes += squared > 1 ? 1 : 0;
-        if (squared > largest) {
-            largest = squared;
-            stability.frequency_rad_s = std::abs(lane::atan2(im, re)) / tick_s;
-        }
-    }
-    stability.spectral_radius = std::sqrt(largest);
-    stability.growth_rate_1_s = natural_log(stability.spectral_radius) / tick_s;
-}
-
 /// The slopes of the surfaces and the gains they compete with.
 void find_stiffness(const TickModel& model, const HoverTrim& trim, LinearEffect& effect, HoverStability& stability) {
     const PlantModel& plant = model.plant;
@@ -130,32 +94,10 @@ void find_stiffness(const TickModel& model, const HoverTrim& trim, LinearEffect&
     stability.torque_gain_nm_rad = inertia_kg_m2 * trim.pitch_gain_1_s2 * wrench(q[1], 0, unit_n).pitch_torque_nm;
 }
 
-/// Whether what is above a rotor pulls it in a way that K does not tell: some of it is so near that its part of K is
-/// flat, or the sum of both sides is at the cap where it would rise on the way up. The ground is not asked for, and a
-/// given map is taken at its word.
-bool is_beyond_model(const DirectEffect& effect, const Vector3& hub_m) {
-    const AeroSettings& settings = effect.settings();
-    if (!settings.enabled || settings.map || effect.ceiling().is_none()) {
-        return false;
-    }
-    // Slopes are taken over a step to either side.
-    constexpr double h = simulation::slope_step_m;
-    constexpr double farthest_m = 1e6;
-    const double flat_m = effect.rotor_radius_m() * effect.ceiling().flat_distance();
-    if (flat_m > 0 &&
-        !column_is_clear(effect.scene(), hub_m, effect.rotor_radius_m(), std::min(flat_m + h, farthest_m))) {
-        return true;
-    }
-    const auto above = effect.factors({hub_m[0], hub_m[1], hub_m[2] + h});
-    const auto below = effect.factors({hub_m[0], hub_m[1], hub_m[2] - h});
-    return std::max(above.total, below.total) >= settings.max_factor &&
-           std::max(above.ground, below.ground) < settings.max_factor &&
-           above.ground + above.ceiling > below.ground + below.ceiling;
-}
-
 bool is_within_model(const FlightModel& model, const PlanarPose& pose) {
     return simulation::all_rotors(model, pose, [&](int rotor, double x_m, double z_m) {
-        return !is_beyond_model(model.effect(rotor), model.plane().to_world(x_m, model.rotor_lateral_m(rotor), z_m));
+        return !simulation::is_beyond_model(model.effect(rotor),
+                                            model.plane().to_world(x_m, model.rotor_lateral_m(rotor), z_m));
     });
 }
 
@@ -188,11 +130,12 @@ HoverAnalysis analyse_hover(const FlightModel& model, double x_m, double z_m, do
     }
     find_stiffness(tick, analysis.trim, effect, analysis.stability);
     if (simulation::older_ticks(model.nominal_world().numbers.delay_ticks) == 0) {
-        find_modes(jacobian<Jacobian>(model, analysis.trim, effect), tick.tick_s, analysis.stability);
+        simulation::find_modes(jacobian<Jacobian>(model, analysis.trim, effect), tick.tick_s, analysis.stability);
     } else {
-        find_modes(jacobian<Eigen::MatrixXd>(model, analysis.trim, effect), tick.tick_s, analysis.stability);
+        simulation::find_modes(jacobian<Eigen::MatrixXd>(model, analysis.trim, effect), tick.tick_s,
+                               analysis.stability);
     }
-    if (!(analysis.stability.spectral_radius < 1 - radius_slack)) {
+    if (!(analysis.stability.spectral_radius < 1 - simulation::radius_slack)) {
         analysis.verdict = HoldVerdict::unstable;
     } else {
         analysis.verdict = is_within_model(model, pose) ? HoldVerdict::stable : HoldVerdict::unknown;

@@ -1,12 +1,8 @@
 #include "downwash/simulation/loop_margins.hpp"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
-#include <complex>
 #include <cstddef>
-#include <limits>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -15,14 +11,15 @@
 #include "downwash/dynamics/flight_step.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
+#include "downwash/simulation/linear_loop.hpp"
 
 namespace downwash {
 namespace {
 
-using Complex = std::complex<double>;
+using simulation::LatePart;
+using simulation::LinearLoop;
 
 constexpr std::array<std::string_view, 3> input_names = {"thrust", "pitch_torque", "joint_torque"};
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// One tick, with something added to a command between controller and plant.
 struct Disturbed {
@@ -59,22 +56,6 @@ struct Disturbed {
         }
         return result;
     }
-};
-
-/// What past motions of one age do to a tick.
-struct LatePart {
-    int age = 0;        ///< in ticks, from 1
-    Eigen::MatrixXd a;  ///< a column for each number of the motion
-    Eigen::RowVectorXd c;
-};
-
-/// The closed loop from what is added to a command to that command, x' = A x + B u, y = C x, with the parts of what the
-/// controller sees late. A motion of that age is the first numbers of x so many ticks ago, so that x has no others.
-struct LinearLoop {
-    Eigen::MatrixXd a;
-    Eigen::VectorXd b;
-    Eigen::RowVectorXd c;
-    std::vector<LatePart> late;
 };
 
 constexpr int motion_numbers = number_count<double, simulation::PastMotion<double>>;
@@ -141,75 +122,6 @@ LinearLoop linearised(const Disturbed& tick) {
     return loop;
 }
 
-/// A loop's answer at a frequency, exactly: a past motion is the motion times z^-age.
-class FrequencyResponse {
- public:
-    explicit FrequencyResponse(const LinearLoop& loop) : loop_(loop) {}
-
-    /// The loop's gain L: the command that comes back, reversed, for one that goes in. With T from what is added to the
-    /// command, u = y + d and y = T d, so that L = -T / (1 + T).
-    [[nodiscard]] Complex gain_at(double angle_rad) const {
-        const Eigen::Index size = loop_.a.rows();
-        Eigen::MatrixXcd a = loop_.a;
-        Eigen::RowVectorXcd c = loop_.c;
-        for (const LatePart& part : loop_.late) {
-            const Complex ago = std::polar(1.0, -angle_rad * part.age);
-            a.leftCols(motion_numbers) += ago * part.a;
-            c.head(motion_numbers) += ago * part.c;
-        }
-        const Eigen::MatrixXcd resolvent = std::polar(1.0, angle_rad) * Eigen::MatrixXcd::Identity(size, size) - a;
-        const Complex t = c * resolvent.partialPivLu().solve(loop_.b.cast<Complex>());
-        return -t / (1.0 + t);
-    }
-
- private:
-    const LinearLoop& loop_;
-};
-
-/// Margins from samples of L over rising frequencies, between which its logarithm is taken as linear.
-LoopMargins margins_of(const LinearLoop& loop, double tick_s) {
-    const FrequencyResponse response(loop);
-    constexpr int samples = 500;
-    constexpr double lowest_rad_s = 0.02;
-    const double highest_rad_s = std::numbers::pi / tick_s;
-    LoopMargins margins{infinity, infinity, 0, infinity};
-    double frequency_before = 0;
-    Complex before;
-    for (int i = 0; i < samples; ++i) {
-        const double share = static_cast<double>(i) / (samples - 1);
-        const double frequency = lowest_rad_s * std::pow(highest_rad_s / lowest_rad_s, share);
-        Complex gain = response.gain_at(std::min(frequency * tick_s, std::numbers::pi));
-        if (i == samples - 1) {
-            gain = gain.real();  // at half the sampling frequency L is real: the curve ends on the axis
-        }
-        if (i > 0) {
-            const double size = std::log(std::abs(gain));
-            const double size_before = std::log(std::abs(before));
-            if (size * size_before <= 0 && size != size_before) {  // the gain crosses 1
-                const double at = size_before / (size_before - size);
-                const double frequency_there = frequency_before * std::pow(frequency / frequency_before, at);
-                const double phase = std::arg(-before) + at * std::arg(gain / before);  // from -1
-                const double folded = std::remainder(phase, 2 * std::numbers::pi);
-                margins.phase_margin_rad = std::min(margins.phase_margin_rad, std::abs(folded));
-                margins.crossover_rad_s = frequency_there;
-                const double lag = folded >= 0 ? folded : folded + 2 * std::numbers::pi;
-                margins.delay_margin_s = std::min(margins.delay_margin_s, lag / frequency_there);
-            }
-            const bool crosses_axis = gain.imag() * before.imag() <= 0 && gain.imag() != before.imag();
-            if (crosses_axis) {
-                const double at = before.imag() / (before.imag() - gain.imag());
-                const double real = before.real() + at * (gain.real() - before.real());
-                if (real < 0) {
-                    margins.gain_margin_db = std::min(margins.gain_margin_db, std::abs(20 * std::log10(-real)));
-                }
-            }
-        }
-        before = gain;
-        frequency_before = frequency;
-    }
-    return margins;
-}
-
 }  // namespace
 
 std::string_view name_of(LoopInput input) {
@@ -230,7 +142,7 @@ std::array<LoopMargins, 3> loop_margins(const Robot& robot, double arm_rad) {
     std::array<LoopMargins, 3> margins{};
     for (const LoopInput input : all_loop_inputs) {
         margins[static_cast<std::size_t>(input)] =
-            margins_of(linearised({model, hover.trim, input}), model.tick().tick_s);
+            simulation::margins_of(linearised({model, hover.trim, input}), model.tick().tick_s);
     }
     return margins;
 }

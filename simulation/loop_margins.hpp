@@ -24,6 +24,7 @@ struct LoopMargins {
     double phase_margin_rad = 0;  ///< least lag, or lead, that makes it unstable; infinite: the gain is never 1
     double crossover_rad_s = 0;   ///< greatest frequency at which the gain is 1; 0: none
     double delay_margin_s = 0;    ///< least further delay that makes it unstable by its phase margins
+    double bandwidth_rad_s = 0;   ///< greatest frequency at which the closed loop's answer is 1 / sqrt 2; 0: none
 };
 
 /// The margins of a vehicle that hovers in free air with its arm at an angle, for every LoopInput. The loop is that of

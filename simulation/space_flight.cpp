@@ -12,6 +12,7 @@
 #include "downwash/simulation/flight_rules.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/space_touch_flight.hpp"
+#include "downwash/simulation/space_rules.hpp"
 
 namespace downwash {
 namespace {
@@ -27,20 +28,15 @@ double length_of(const Vector3& v) {
 }
 
 double tracking_error_m(const SpaceMotion& motion, const SpacePoint& reference) {
-    return length_of(Vector3{reference.position[0], reference.position[1], reference.position[2]} - motion.position_m);
-}
-
-/// Cosine of the angle between the body's z axis and the vertical.
-double cosine_of_tilt(const SpaceMotion& motion) {
-    const auto& q = motion.attitude;
-    return 1 - 2 * (q[1] * q[1] + q[2] * q[2]) / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    return simulation::space_tracking_error_m(motion.position_m.data(), reference.position);
 }
 
 /// Whether a vehicle is lost.
 class Stability {
  public:
     [[nodiscard]] bool is_lost(const SpaceLoop& loop, const SpaceMotion& motion, const SpacePoint& reference) {
-        const bool is_upright = cosine_of_tilt(motion) > lane::sin_cos(unstable_pitch_rad).cosine;
+        const bool is_upright =
+            simulation::cosine_of_tilt(motion.attitude.data()) > lane::sin_cos(unstable_pitch_rad).cosine;
         const bool falls_over = was_upright_ && !is_upright;
         was_upright_ = was_upright_ || is_upright;
         // A number that is not finite is beyond every limit.

@@ -39,13 +39,17 @@ SpaceAero space_aero(const AeroSettings& aero, double rotor_radius_m) {
     return {aero.map ? TiltLoss{} : aero.tilt_loss, aero.wall.force, aero.wall.moment * rotor_radius_m};
 }
 
-std::unique_ptr<SpaceLoop> make_space_loop(const SpaceLoopSetup& setup) {
-    if (setup.robot.joints() > DOWNWASH_MAX_JOINTS) {
-        throw_input_error("has " + std::to_string(setup.robot.joints()) +
-                              " joints, but this build flies arms of up to " + std::to_string(DOWNWASH_MAX_JOINTS) +
-                              ": configure it with -DDOWNWASH_MAX_JOINTS=" + std::to_string(setup.robot.joints()),
+void require_built_joints(const SpaceRobot& robot) {
+    if (robot.joints() > DOWNWASH_MAX_JOINTS) {
+        throw_input_error("has " + std::to_string(robot.joints()) + " joints, but this build flies arms of up to " +
+                              std::to_string(DOWNWASH_MAX_JOINTS) +
+                              ": configure it with -DDOWNWASH_MAX_JOINTS=" + std::to_string(robot.joints()),
                           "robot.arm");
     }
+}
+
+std::unique_ptr<SpaceLoop> make_space_loop(const SpaceLoopSetup& setup) {
+    require_built_joints(setup.robot);
     return made(setup, std::make_integer_sequence<int, DOWNWASH_MAX_JOINTS + 1>());
 }
 

@@ -53,6 +53,9 @@ struct SpaceFlightRow {
 
 namespace simulation {
 
+/// @throws InputError if the robot has more joints than this library was built for
+DOWNWASH_EXPORT void require_built_joints(const SpaceRobot& robot);
+
 /// How surfaces act on a robot besides the field that says where.
 struct SpaceAero {
     TiltLoss tilt_loss;

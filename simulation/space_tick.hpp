@@ -83,6 +83,21 @@ void shift_center_of_mass(const dynamics::LaneVector<T>& center_of_mass_m, T sig
     state.u[2] = state.u[2] + sign * velocity.z;
 }
 
+/// The plant's part of a tick in a world. It moves about its true centre of mass; states refer to the centre of mass of
+/// the robot file.
+/// @param plant see plant_in()   @param wind in this tick [m/s]   @param[out] next not the state itself
+template <class T, int n, SpaceField<T> Field, class Step>
+void move_in_world(const SpaceTickModel<n>& model, const SpaceWorldDifferences<T>& world,
+                   const BasicSpaceModel<T, n>& plant, const dynamics::LaneVector<T>& wind,
+                   const dynamics::SpaceState<T, n>& state, const dynamics::SpaceCommand<T, n>& command, Field& field,
+                   const Step& step, dynamics::SpaceState<T, n>& next) {
+    const WorldSpace<T, Field> around(world, wind, field, model.tilt_loss, model.slipstreams);
+    dynamics::SpaceState<T, n> moving = state;
+    shift_center_of_mass(world.center_of_mass_m, T(1), moving);
+    next = step(plant, moving, command, T(model.tick_s), around);
+    shift_center_of_mass(world.center_of_mass_m, T(-1), next);
+}
+
 /// One control tick in a world; every lane may have a world of its own. In the nominal world of a robot without delay
 /// it is tick() to the last bit.
 /// @param plant see plant_in()   @param noise standard normal numbers of this tick
@@ -94,13 +109,8 @@ void tick_in_world(const SpaceTickModel<n>& model, const Law& law, const SpaceWo
                    SpaceActuation<T, n>& given, SpaceFlightState<T, n>& next, const Step& step = {}) {
     const dynamics::SpaceState<T, n> seen = seen_state(world, state.plant, state.world, noise);
     control(model, law, seen, state.memory, reference, field, given, next.memory);
-    const WorldSpace<T, Field> around(world, wind_in(world, state.world.gust), field, model.tilt_loss,
-                                      model.slipstreams);
-    // The plant moves about its true centre of mass; states refer to the centre of mass of the robot file.
-    dynamics::SpaceState<T, n> moving = state.plant;
-    shift_center_of_mass(world.center_of_mass_m, T(1), moving);
-    next.plant = step(plant, moving, given.command, T(model.tick_s), around);
-    shift_center_of_mass(world.center_of_mass_m, T(-1), next.plant);
+    move_in_world(model, world, plant, wind_in(world, state.world.gust), state.plant, given.command, field, step,
+                  next.plant);
     pass_tick(world, state.plant, state.world, noise, next.world);
 }
 

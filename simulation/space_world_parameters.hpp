@@ -8,7 +8,7 @@
 #include "downwash/base/export.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/simulation/space_robot.hpp"
-#include "downwash/simulation/space_world.hpp"
+#include "downwash/simulation/space_world_description.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
 // The one table of what worlds in space draw, as world_parameters.hpp is that of the plane: keys of files and random

@@ -113,6 +113,15 @@ void pass_gust_pair(const GustPairNumbers<T>& filter, const T& first, const T& s
         filter.decay * state[1] + filter.coupling * before + (filter.noise[1] * first + filter.noise[2] * second);
 }
 
+/// The filters of the gusts one tick later.
+/// @param noise standard normal numbers of the tick   @param[in,out] gust see SpaceWorldMemory
+template <class T>
+void pass_gusts(const SpaceWorldDifferences<T>& world, const T noise[space_noise_count], T gust[5]) {
+    gust[0] = world.gust_decay * gust[0] + world.gust_noise * noise[9];
+    pass_gust_pair(world.gust_left, noise[10], noise[11], gust + 1);
+    pass_gust_pair(world.gust_up, noise[12], noise[13], gust + 3);
+}
+
 /// The memory one tick later. @param[out] next not the memory itself
 template <class T, int n>
 void pass_tick(const SpaceWorldDifferences<T>& world, const dynamics::SpaceState<T, n>& now,
@@ -129,9 +138,7 @@ void pass_tick(const SpaceWorldDifferences<T>& world, const dynamics::SpaceState
     for (int i = 0; i < 5; ++i) {
         next.gust[i] = memory.gust[i];
     }
-    next.gust[0] = world.gust_decay * next.gust[0] + world.gust_noise * noise[9];
-    pass_gust_pair(world.gust_left, noise[10], noise[11], next.gust + 1);
-    pass_gust_pair(world.gust_up, noise[12], noise[13], next.gust + 3);
+    pass_gusts(world, noise, next.gust);
 }
 
 /// See seen_state() of SpaceWorldMemory; for any delay.

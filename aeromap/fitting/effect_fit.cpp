@@ -238,20 +238,20 @@ std::vector<Free> free_parameters(EffectModel model, const FitOptions& options) 
 
 void check_points(const std::vector<Measurement>& points, std::size_t free_count, const FitOptions& options) {
     if (points.empty()) {
-        throw_input_error("there are no measurements to fit");
+        throw_input_error("nothing to fit; expected at least one measurement", options.source);
     }
     std::set<double> distances;
     for (const Measurement& point : points) {
         distances.insert(point.z_over_r);
         if (options.is_weighted && !point.sigma) {
-            throw_input_error("line " + std::to_string(point.line) +
-                              " has no sigma; expected one for every measurement of a weighted fit");
+            throw_input_error("no sigma; expected one for every measurement of a weighted fit",
+                              options.source + ":" + std::to_string(point.line));
         }
     }
     if (distances.size() < free_count) {
-        throw_input_error("the measurements have " + std::to_string(distances.size()) +
-                          " different z_over_r; expected at least " + std::to_string(free_count) +
-                          ", one for each parameter of the model");
+        throw_input_error("only " + std::to_string(distances.size()) + " different z_over_r; expected at least " +
+                              std::to_string(free_count) + ", one for each parameter of the model",
+                          options.source);
     }
 }
 

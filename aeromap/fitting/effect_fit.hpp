@@ -18,6 +18,7 @@ struct FitOptions {
     RotorNeighbours neighbours;  ///< rotor layout of the multirotor models; default: one rotor alone
     std::vector<std::pair<std::string, double>> fixed;  ///< parameters that keep a value, by name
     bool is_weighted = false;                           ///< weights each residual by 1 / sigma
+    std::string source = "the measurements";            ///< what errors call them: the name of their file
 };
 
 /// A parameter of the model after the fit.

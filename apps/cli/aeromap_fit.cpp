@@ -296,6 +296,7 @@ ExitCode fit_model(const FitArguments& given) {
         settings.format = picture_format("--out", given.picture);
     }
     FitOptions options;
+    options.source = given.data.file;
     options.neighbours = given.data.neighbours();
     if (is_multirotor(known.model) && !given.data.rotor_spacing) {
         throw UsageError(

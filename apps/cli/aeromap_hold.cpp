@@ -9,10 +9,12 @@
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/in_space.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
@@ -23,6 +25,7 @@ struct HoldArguments {
     std::string problem;
     std::optional<double> arm_deg;
     std::vector<std::array<double, 2>> at;
+    HoldInSpace in_space;
     bool as_json = false;
 };
 
@@ -101,6 +104,29 @@ void print_table(const std::vector<HoldAnswer>& answers) {
 }
 
 ExitCode run(const HoldArguments& given) {
+    const HoldInSpace& space = given.in_space;
+    if (is_space_problem_file(given.problem)) {
+        if (!given.at.empty() || given.arm_deg) {
+            throw UsageError(
+                "--at and --arm-deg are for problems in a vertical plane: {} is one in space, expected "
+                "--place and --joints-deg",
+                given.problem);
+        }
+        HoldInSpace own = space;
+        own.problem = given.problem;
+        own.as_json = given.as_json;
+        return hold_in_space(own);
+    }
+    if (!space.places.empty() || !space.from.empty() || !space.to.empty() || space.yaw_deg ||
+        !space.joints_deg.empty()) {
+        throw UsageError(
+            "--place, --from, --to, --yaw-deg and --joints-deg are for problems in space: {} is none, "
+            "expected --at and --arm-deg",
+            given.problem);
+    }
+    if (given.at.empty()) {
+        throw UsageError("--at is required");
+    }
     for (const auto& [x_m, z_m] : given.at) {
         require_coordinate(x_m, "--at");
         require_coordinate(z_m, "--at");
@@ -134,7 +160,19 @@ void add_aeromap_hold(Command aeromap, Action& action) {
         run);
     add_problem(command, given.problem);
     add_arm(command, given.arm_deg);
-    add_points(command, given.at, "centre of mass in plane coordinates [m], within the bounds or not").required();
+    add_points(command, given.at, "centre of mass in plane coordinates [m], within the bounds or not");
+    HoldInSpace& space = given.in_space;
+    command
+        .add_option("--place X Y Z", space.places,
+                    "a place of a problem in space; may be repeated; the multirotor's centre of mass [m]")
+        .repeated();
+    command.add_option("--from X Y Z", space.from, "lowest corner of a grid of places in space [m]").values(3);
+    command.add_option("--to X Y Z", space.to, "its highest corner").values(3);
+    command.add_option("--step M", space.step_m, "distance of its places").positive().shows_default();
+    command.add_option("--yaw-deg A", space.yaw_deg, "yaw in space; default: that of the start");
+    command.add_option("--joints-deg Q", space.joints_deg, "angles of all joints in space; default: those of the start")
+        .values(1, max_joints);
+    add_threads(command, space.threads);
     add_json(command, given.as_json);
 }
 

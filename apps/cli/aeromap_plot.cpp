@@ -166,7 +166,8 @@ void add_aeromap_plot(Command aeromap, Action& action) {
         add_command(aeromap, action, "plot",
                     "Draw a problem's aero map, curves of models with measurements, or a rotor's potential flow", run);
     given.command = plot;
-    plot.add_option("PROBLEM", given.problem, "problem file: draw a picture over its plane of motion");
+    plot.add_option("PROBLEM", given.problem, "problem file: draw a picture over its plane of motion")
+        .offers_files({".yaml", ".yml"});
     Option kind = plot.add_option("--what", given.what, "what to show of a problem: " + kinds_text());
     kind.shows_default().offers(names_of(field_kinds));
     Option one_rotor = plot.add_option("--rotor N", given.rotor, "number of the rotor, counted from 1").shows_default();

@@ -312,7 +312,7 @@ void add_aeromap_query(Command aeromap, Action& action) {
         aeromap, action, "query",
         "Print the thrust ratio K of a rotor: PROBLEM with --at, or --model with --z-over-r for a wide flat surface",
         run);
-    command.add_option("PROBLEM", given.problem, "problem file");
+    command.add_option("PROBLEM", given.problem, "problem file").offers_files({".yaml", ".yml"});
     add_points(command, given.at,
                "rotor hub in the world frame [m]. `factor` comes from the problem's map if the point "
                "lies on one of its planes");

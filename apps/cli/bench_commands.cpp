@@ -10,7 +10,7 @@ void add_bench_run(Command bench, Action& action, ExitCode (*run)(const BenchRun
     auto [command, given] = add_command(
         bench, action, "run",
         "Run problems x variants x algorithms x seeds on all processors into one SQLite file, campaign.db", run);
-    command.add_option("CAMPAIGN", given.campaign, "campaign file").required();
+    command.add_option("CAMPAIGN", given.campaign, "campaign file").required().offers_files({".yaml", ".yml"});
     add_out(command, "DIR", given.out, "folder for the results; default downwash-out/bench-NAME/");
     command.add_flag("--resume", given.resumes,
                      "continue with the results that are there, if they were begun with the same settings");
@@ -58,7 +58,7 @@ void add_bench_report(Command bench, Action& action, ExitCode (*run)(const Bench
 }
 
 void add_script_options(Command command, BenchScriptArguments& given) {
-    command.add_option("CAMPAIGN", given.campaign, "campaign file").required();
+    command.add_option("CAMPAIGN", given.campaign, "campaign file").required().offers_files({".yaml", ".yml"});
     command.add_option("--shards N", given.shards, "how many shards")
         .required()
         .in_range(std::uint64_t{1}, bench::max_shards);

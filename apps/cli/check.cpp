@@ -331,8 +331,10 @@ void add_check(Command program, Action& action) {
         "line and column, and on one line each what robots, meshes, octrees and tables became; with --picture or "
         "--page, show a problem before it is planned",
         run);
-    command.add_option("PROBLEM", given.problems,
-                       "problem, robot or campaign files, or grids, effect tables and measurements as .csv or .tsv");
+    command
+        .add_option("PROBLEM", given.problems,
+                    "problem, robot or campaign files, or grids, effect tables and measurements as .csv or .tsv")
+        .offers_files({".yaml", ".yml", ".csv", ".tsv"});
     Option schema =
         command.add_option("--schema", given.schema,
                            "print the JSON Schema of a kind of file instead, for editors that complete and check YAML");

@@ -6,7 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdint>
+#include <ranges>
 
+#include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash::cli {
@@ -52,6 +54,18 @@ std::string explained(CLI::App& command, const CLI::Error& error) {
         }
         if (error.get_name() == "ArgumentMismatch" && option->get_items_expected_min() > 1) {
             return fmt::format("{} takes {} values: expected {}", spelled, option->get_items_expected_min(), expected);
+        }
+        constexpr std::string_view colon = ": ", none_of = " not in {";
+        if (const std::size_t list = value.rfind(none_of);
+            value.starts_with(colon) && list != std::string_view::npos && value.ends_with("}")) {
+            std::vector<std::string_view> names;
+            const std::string_view words = value.substr(list + none_of.size());
+            for (const auto word : std::views::split(words.substr(0, words.size() - 1), ',')) {
+                names.emplace_back(word.begin(), word.end());
+            }
+            const std::string_view given = value.substr(colon.size(), list - colon.size());
+            return fmt::format("{} is '{}': expected {}{}", spelled, excerpt(given), joined_names(names),
+                               did_you_mean(given, names));
         }
         constexpr std::string_view before = ": Value ", after = " not in range ";
         if (const std::size_t range = value.rfind(after);
@@ -132,6 +146,10 @@ Option Option::placeholder(const std::string& text) {
 Option Option::offer(const std::vector<std::string_view>& words) {
     option_->check(CLI::Validator([](std::string& /*text*/) { return std::string(); }, "", joined(words, " ")));
     return *this;
+}
+
+Option Option::offers_files(const std::vector<std::string>& endings) {
+    return offer(std::vector<std::string_view>{fmt::format("@{}", fmt::join(endings, " @"))});
 }
 
 Option Option::one_of(const std::vector<std::string>& words) {

@@ -51,6 +51,8 @@ class Option {
     Option offers(const Words& words) {
         return offer({std::begin(words), std::end(words)});
     }
+    /// Makes shells offer folders and files with these endings (".yaml").
+    Option offers_files(const std::vector<std::string>& endings);
     /// Restricts the value to these words. They are offered and shown as its type.
     Option one_of(const std::vector<std::string>& words);
 
@@ -69,7 +71,7 @@ class Option {
     /// Empty if none is shown.
     [[nodiscard]] std::string default_text() const;
     [[nodiscard]] int max_values() const;
-    /// The words that shells offer after it, with blanks between them.
+    /// The words that shells offer after it, with blanks between them; "@.yaml" stands for folders and such files.
     [[nodiscard]] std::string offered_words() const;
 
  private:

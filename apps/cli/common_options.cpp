@@ -28,7 +28,7 @@ std::filesystem::path path_in(const char* variable) {
 }  // namespace
 
 void add_problem(Command command, std::string& file) {
-    command.add_option("PROBLEM", file, "problem file").required();
+    command.add_option("PROBLEM", file, "problem file").required().offers_files({".yaml", ".yml"});
 }
 
 void add_json(Command command, bool& as_json, const std::string& detail) {
@@ -68,7 +68,8 @@ void add_wall_limit(Command command, std::optional<double>& limit_s, const std::
 
 Option add_plan(Command command, std::string& plan) {
     return command.add_option("--plan FILE", plan, "the plan: solution.json, or the folder of the run that wrote it")
-        .required();
+        .required()
+        .offers_files({".json"});
 }
 
 Option add_run(Command command, std::string& folder) {

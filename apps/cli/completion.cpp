@@ -97,6 +97,16 @@ std::string fish_line(const Command& command, const std::string& what, const std
                        in_fish_quotes(description.substr(0, description.find('\n'))));
 }
 
+/// What fish's `complete` offers for words; files with some endings come before others.
+std::string fish_words(const std::string& offered) {
+    if (!offered.starts_with('@')) {
+        return "-f -a " + in_fish_quotes(offered);
+    }
+    std::string endings = offered;
+    std::erase(endings, '@');
+    return "-k -a " + in_fish_quotes("(__fish_complete_suffix " + endings + ")");
+}
+
 std::string fish_option(const Option& option) {
     std::string text;
     for (const std::string& name : option.names()) {
@@ -104,7 +114,7 @@ std::string fish_option(const Option& option) {
     }
     const std::string offered = option.offered_words();
     if (option.max_values() > 0) {
-        text += offered.empty() ? " -r" : " -x -a " + in_fish_quotes(offered);
+        text += offered.empty() ? " -r" : " -r " + fish_words(offered);
     }
     return text.substr(1);
 }
@@ -133,7 +143,7 @@ std::string fish_script(const Command& program) {
             if (!option.is_positional()) {
                 script += fish_line(command, fish_option(option), option.description());
             } else if (!option.offered_words().empty()) {
-                script += fish_line(command, "-f -a " + in_fish_quotes(option.offered_words()), option.description());
+                script += fish_line(command, fish_words(option.offered_words()), option.description());
             }
         }
     });

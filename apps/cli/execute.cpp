@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/execute_arguments.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/plan_origin.hpp"
-#include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/run_report.hpp"
@@ -18,23 +18,13 @@
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/results/run_record.hpp"
 #include "downwash/results/solution_file.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::cli {
 namespace {
-
-struct ExecuteArguments {
-    std::string problem;
-    std::string plan;
-    std::string aero = "on";
-    std::optional<std::uint64_t> world, seed;
-    std::optional<std::string> out;
-    PlannerOptions planner;
-    int threads = default_threads();
-    bool is_quiet = false, as_json = false, force = false;
-};
 
 /// The problem with the planner settings that the plan was made with, as far as its file tells.
 Problem as_planned(Problem problem, const Solution& solution) {
@@ -45,24 +35,13 @@ Problem as_planned(Problem problem, const Solution& solution) {
     return problem;
 }
 
-std::uint64_t seed_of(const ExecuteArguments& given, const Problem& problem) {
-    return given.seed.value_or(problem.planner.seed);
-}
-
 /// The world that was asked for; nothing for the nominal one.
 std::optional<FlownWorld> world_of(const ExecuteArguments& given, const Problem& problem) {
-    if (!given.world) {
-        if (given.seed) {
-            throw UsageError("--seed says which worlds there are: expected --world too");
-        }
+    const auto asked = execution_world(given, problem.uncertainty.has_value(), problem.planner.seed);
+    if (!asked) {
         return std::nullopt;
     }
-    if (!problem.uncertainty) {
-        throw UsageError("--world needs to know what is uncertain: " + given.problem +
-                         " has no `uncertainty:`, or `uncertainty: none`; `uncertainty: {}` stands for the defaults");
-    }
-    return make_world(problem.robot,
-                      draw_world(*problem.uncertainty, problem.robot, seed_of(given, problem), *given.world));
+    return make_world(problem.robot, draw_world(*problem.uncertainty, problem.robot, asked->seed, asked->index));
 }
 
 void fly(const Problem& problem, const FlightModel& model, bool aero, const std::optional<FlownWorld>& world,
@@ -85,6 +64,9 @@ void fly(const Problem& problem, const FlightModel& model, bool aero, const std:
 }
 
 ExitCode run(const ExecuteArguments& given) {
+    if (is_space_problem_file(given.problem)) {
+        return execute_in_space(given);
+    }
     Interruption interruption;
     std::vector<LocatedError> warnings;
     Problem read = read_problem(
@@ -94,8 +76,9 @@ ExitCode run(const ExecuteArguments& given) {
     require_whole_plan(given.plan);
     read = as_planned(std::move(read), solution);
     const std::optional<FlownWorld> world = world_of(given, read);
-    RunFolder folder = claimed_folder(folder_beside_plan(given.out, read, "-executed", plan_file(given.plan)), read,
-                                      given.problem, given.force);
+    RunFolder folder =
+        claimed_folder(folder_beside_plan(given.out, default_folder(read), "-executed", plan_file(given.plan)), read,
+                       given.problem, given.force);
     const bool is_other = is_of_another_problem(plan_file(given.plan), solution.certificate.has_value(), read);
     if (is_other) {
         solution.certificate.reset();
@@ -110,9 +93,7 @@ ExitCode run(const ExecuteArguments& given) {
         const bool is_solved = solution.execution->outcome == Outcome::ok && !read.uncertainty;
         solution.status = is_solved ? Status::solved : Status::approximate;
     }
-    if (world) {
-        solution.execution_world = {*given.world, seed_of(given, read)};
-    }
+    solution.execution_world = execution_world(given, read.uncertainty.has_value(), read.planner.seed);
     if (const auto warning = unseen_warning(solution, given.problem)) {
         noting(warnings, given.is_quiet)(*warning);
     }
@@ -128,6 +109,20 @@ ExitCode run(const ExecuteArguments& given) {
 }
 
 }  // namespace
+
+std::optional<ExecutionWorld> execution_world(const ExecuteArguments& given, bool has_uncertainty, std::uint32_t seed) {
+    if (!given.world) {
+        if (given.seed) {
+            throw UsageError("--seed says which worlds there are: expected --world too");
+        }
+        return std::nullopt;
+    }
+    if (!has_uncertainty) {
+        throw UsageError("--world needs to know what is uncertain: " + given.problem +
+                         " has no `uncertainty:`, or `uncertainty: none`; `uncertainty: {}` stands for the defaults");
+    }
+    return ExecutionWorld{*given.world, given.seed.value_or(seed)};
+}
 
 void add_execute(Command program, Action& action) {
     auto [command, given] = add_command(

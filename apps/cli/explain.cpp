@@ -197,6 +197,17 @@ ExitCode run(const ExplainArguments& given) {
         given.kind, excerpt(given.key), did_you_mean(wanted, names));
 }
 
+/// Of problem files, for shells: without the brackets of lists, which these would read as patterns.
+std::vector<std::string_view> paths_of_keys() {
+    std::vector<std::string_view> paths;
+    for (const KeyReference& known : key_reference(FileKind::problem)) {
+        if (known.info.path.find('[') == std::string::npos) {
+            paths.push_back(known.info.path);
+        }
+    }
+    return paths;
+}
+
 }  // namespace
 
 void add_explain(Command program, Action& action) {
@@ -206,7 +217,8 @@ void add_explain(Command program, Action& action) {
         .add_option("KEY", given.key,
                     "a key (safety_margin_m), a path of keys (planner.safety_margin_m), or a word (margin) of keys or "
                     "their descriptions")
-        .required();
+        .required()
+        .offers(paths_of_keys());
     Option option = command.add_option(
         "--of", given.kind,
         "kind of file; default problem, with its robot; what flies in space is of space-problem and space-robot");

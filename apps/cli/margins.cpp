@@ -1,4 +1,4 @@
-#include "downwash/simulation/loop_margins.hpp"
+#include "downwash/cli/margins.hpp"
 
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
@@ -6,44 +6,48 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include "downwash/base/angles.hpp"
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/in_space.hpp"
 #include "downwash/cli/output.hpp"
+#include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/simulation/robot_facts.hpp"
 
 namespace downwash::cli {
 namespace {
 
-/// What a robust loop should have at least (Astrom and Murray 2008, section 9.3).
-constexpr double enough_gain_db = 6;
-constexpr double enough_phase_rad = std::numbers::pi / 4;
-
-/// "up", "level", "down", or the angle.
-std::string arm_name(double arm_rad) {
-    const auto is = [arm_rad](double named_rad) { return std::abs(arm_rad - named_rad) < 1e-9; };
-    constexpr double quarter_turn_rad = std::numbers::pi / 2;
-    return is(-quarter_turn_rad)  ? "up"
-           : is(0)                ? "level"
-           : is(quarter_turn_rad) ? "down"
-                                  : fmt::format("{:.0f} deg", arm_rad * degrees_per_radian);
-}
-
 struct MarginsArguments {
     std::string robot;
+    std::vector<double> joints_deg;
+    bool designs = false;
+    Design design;
     bool as_json = false;
 };
-
-bool is_enough(const LoopMargins& margins) {
-    return margins.gain_margin_db >= enough_gain_db && margins.phase_margin_rad >= enough_phase_rad;
-}
 
 std::string text_of(double value, const char* unit) {
     return std::isfinite(value) ? fmt::format("{:.1f} {}", value, unit) : "-";
 }
 
 ExitCode run(const MarginsArguments& given) {
+    if (given.designs) {
+        Design design = given.design;
+        design.robot = given.robot;
+        design.as_json = given.as_json;
+        return design_gains(design);
+    }
+    if (!(given.design.bandwidths == SpaceBandwidths{}) || given.design.law) {
+        throw UsageError("bandwidths and --law are for --design: expected it, too");
+    }
+    if (is_space_robot_file(given.robot)) {
+        return margins_in_space(given.robot, given.joints_deg, given.as_json);
+    }
+    if (!given.joints_deg.empty()) {
+        throw UsageError("--joints-deg is for robots in space: {} is one in a vertical plane", given.robot);
+    }
     const Robot robot = read_robot(given.robot);
     auto rows = Json::array();
     if (!given.as_json) {
@@ -63,13 +67,13 @@ ExitCode run(const MarginsArguments& given) {
                             {"phase_margin_deg", finite(margins.phase_margin_rad * degrees_per_radian)},
                             {"crossover_rad_s", finite(margins.crossover_rad_s)},
                             {"delay_margin_s", finite(margins.delay_margin_s)},
-                            {"is_enough", is_enough(margins)}});
+                            {"is_enough", has_enough(margins)}});
             if (!given.as_json) {
                 fmt::print("{:<7}{:<15}{:>12}{:>14}{:>16}{:>14}{}\n", arm, name_of(input),
                            text_of(margins.gain_margin_db, "dB"),
                            text_of(margins.phase_margin_rad * degrees_per_radian, "deg"),
                            text_of(margins.crossover_rad_s, "rad/s"), text_of(1e3 * margins.delay_margin_s, "ms"),
-                           is_enough(margins) ? "" : "  below 6 dB or 45 deg");
+                           has_enough(margins) ? "" : "  below 6 dB or 45 deg");
             }
         }
     }
@@ -81,11 +85,48 @@ ExitCode run(const MarginsArguments& given) {
 
 }  // namespace
 
+bool has_enough(const LoopMargins& margins) {
+    constexpr double enough_gain_db = 6;
+    constexpr double enough_phase_rad = std::numbers::pi / 4;
+    return margins.gain_margin_db >= enough_gain_db && margins.phase_margin_rad >= enough_phase_rad;
+}
+
+std::string arm_name(double arm_rad) {
+    const auto is = [arm_rad](double named_rad) { return std::abs(arm_rad - named_rad) < 1e-9; };
+    constexpr double quarter_turn_rad = std::numbers::pi / 2;
+    return is(-quarter_turn_rad)  ? "up"
+           : is(0)                ? "level"
+           : is(quarter_turn_rad) ? "down"
+                                  : fmt::format("{:.0f} deg", arm_rad * degrees_per_radian);
+}
+
 void add_margins(Command program, Action& action) {
     auto [command, given] =
         add_command(program, action, "margins",
                     "Print how far a robot's control loops are from instability: gain, phase and delay margins", run);
     command.add_option("ROBOT", given.robot, "robot file").placeholder("ROBOT").required();
+    command
+        .add_option("--joints-deg Q", given.joints_deg,
+                    "angles of all joints of a robot in space, instead of some poses")
+        .values(1, max_joints);
+    command.add_flag(
+        "--design", given.designs,
+        "print the controller section with gains for the bandwidths below, of a robot with or without one");
+    command.add_option("--law NAME", given.design.law, "law of that section; default: the robot's, or model-inversion")
+        .one_of({std::string(SpaceInversion::name), std::string(Px4Cascade::name)});
+    SpaceBandwidths& bandwidths = given.design.bandwidths;
+    const auto add_bandwidth = [&](const std::string& spelling, auto& value, const std::string& what) {
+        return command.add_option(spelling, value, "natural frequency of " + what).in_range(0.01, 1000.0);
+    };
+    add_bandwidth("--translation-rad-s W", bandwidths.translation_rad_s, "x and y").shows_default();
+    add_bandwidth("--height-rad-s W", bandwidths.height_rad_s, "the height").shows_default();
+    add_bandwidth("--attitude-rad-s W", bandwidths.attitude_rad_s,
+                  "the tilt; default: 0.35 / lag of the rotors, at most 12");
+    add_bandwidth("--yaw-rad-s W", bandwidths.yaw_rad_s, "the yaw").shows_default();
+    add_bandwidth("--joints-rad-s W", bandwidths.joint_rad_s, "the joints").shows_default();
+    command.add_option("--observer-1-s L", bandwidths.observer_gain_1_s, "gain of the disturbance observer; 0: none")
+        .in_range(0.0, 1000.0)
+        .shows_default();
     add_json(command, given.as_json);
 }
 

@@ -43,11 +43,13 @@ void require_entry(const Measurements& measurements, const std::string& file, co
 }
 
 void add_data_files(Command command, std::vector<std::string>& files) {
-    command.add_option("DATA", files, std::string(data_description) + "; several files are taken together").required();
+    command.add_option("DATA", files, std::string(data_description) + "; several files are taken together")
+        .required()
+        .offers_files({".csv", ".tsv"});
 }
 
 void MeasuredData::add_options(Command command) {
-    command.add_option("DATA", file, data_description).required();
+    command.add_option("DATA", file, data_description).required().offers_files({".csv", ".tsv"});
     add_selection(command);
 }
 

@@ -3,11 +3,13 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 
-#include "downwash/cli/results.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
+#include "downwash/problems/space_problem_writer.hpp"
 #include "downwash/results/run_record.hpp"
 
 namespace downwash::cli {
@@ -19,9 +21,9 @@ bool holds_plan(const std::filesystem::path& folder, const std::filesystem::path
     return std::filesystem::equivalent(folder / "solution.json", plan, error);
 }
 
-}  // namespace
-
-bool is_of_another_problem(const std::filesystem::path& plan, bool has_certificate, Problem problem) {
+/// @param read reads the problem that the plan was made for
+template <class AnyProblem, class Read>
+bool is_of_another(const std::filesystem::path& plan, bool has_certificate, AnyProblem problem, const Read& read) {
     const std::string made_for_sha256 = problem_of_solution(plan).sha256;
     if (made_for_sha256.empty()) {
         return has_certificate;
@@ -30,7 +32,7 @@ bool is_of_another_problem(const std::filesystem::path& plan, bool has_certifica
         return false;
     }
     try {
-        const Problem made_for = read_problem((plan.parent_path() / "effective.yaml").string());
+        const AnyProblem made_for = read(plan.parent_path() / "effective.yaml");
         problem.planner = made_for.planner;
         return problem_sha256(made_for) != made_for_sha256 || problem_sha256(problem) != made_for_sha256;
     } catch (const std::runtime_error&) {  // there is none, or it cannot be read
@@ -38,10 +40,22 @@ bool is_of_another_problem(const std::filesystem::path& plan, bool has_certifica
     }
 }
 
-std::filesystem::path folder_beside_plan(const std::optional<std::string>& out, const Problem& problem,
+}  // namespace
+
+bool is_of_another_problem(const std::filesystem::path& plan, bool has_certificate, Problem problem) {
+    return is_of_another(plan, has_certificate, std::move(problem),
+                         [](const std::filesystem::path& file) { return read_problem(file); });
+}
+
+bool is_of_another_problem(const std::filesystem::path& plan, SpaceProblem problem) {
+    return is_of_another(plan, false, std::move(problem),
+                         [](const std::filesystem::path& file) { return read_space_problem(file); });
+}
+
+std::filesystem::path folder_beside_plan(const std::optional<std::string>& out, const std::filesystem::path& usual,
                                          const std::string& suffix, const std::filesystem::path& plan) {
     if (!out) {
-        std::filesystem::path folder = default_folder(problem);
+        std::filesystem::path folder = usual;
         do {
             folder += suffix;
         } while (holds_plan(folder, plan));

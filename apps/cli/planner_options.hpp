@@ -21,6 +21,8 @@ class PlannerOptions {
     /// Overrides the settings of the file with the options that were given.
     /// @throws UsageError with every option whose value is invalid or out of range
     void apply_to(Problem& problem) const;
+    /// Whether any was given.
+    [[nodiscard]] bool is_any() const noexcept { return !given_.empty(); }
 
  private:
     std::map<std::string_view, std::string> given_;  ///< texts by keys

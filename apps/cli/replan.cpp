@@ -89,7 +89,7 @@ ExitCode run(const ReplanArguments& given) {
         },
         given.is_quiet ? nullptr : print_outdated, noting(warnings, given.is_quiet));
     const Problem& read = plannable.problem;
-    const fs::path out = folder_beside_plan(given.out, read, "-replanned", plan_file(given.plan));
+    const fs::path out = folder_beside_plan(given.out, default_folder(read), "-replanned", plan_file(given.plan));
     require_readable_again(read, out);
     RunFolder folder = claimed_folder(out, read, given.problem, given.force);
 

@@ -32,10 +32,6 @@ std::string rejections(const SearchRecord& record) {
     return text.empty() ? "none" : text;
 }
 
-std::string millimetres(double length_m) {
-    return !std::isfinite(length_m) ? "without limit" : to_fixed_text(length_m, 3) + " m";
-}
-
 /// The error of a visit beside what the goal allows, where that is one number.
 std::string error_text(const Goal& goal, const GoalVisit& visit) {
     std::string error = "error " + millimetres(visit.error_m);
@@ -176,9 +172,28 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
 
 }  // namespace
 
-std::filesystem::path default_folder(const Problem& problem) {
+std::filesystem::path default_folder(const std::string& name, const PlannerSettings& planner) {
     return std::filesystem::path("downwash-out") /
-           fmt::format("{}-{}-{}", problem.name, name_of(problem.planner.variant), problem.planner.seed);
+           fmt::format("{}-{}-{}", name, name_of(planner.variant), planner.seed);
+}
+
+std::filesystem::path default_folder(const Problem& problem) {
+    return default_folder(problem.name, problem.planner);
+}
+
+std::string millimetres(double length_m) {
+    return !std::isfinite(length_m) ? "without limit" : to_fixed_text(length_m, 3) + " m";
+}
+
+std::string file_rows(const std::filesystem::path& folder, const std::string& names) {
+    std::string text = table_row("files", (folder / "").string() + "{" + names + "}");
+    if (std::error_code ignored; std::filesystem::exists(folder / run_page_name, ignored)) {
+        text += table_row("page", (folder / run_page_name).string());
+    }
+    if (const std::string others = other_files_in(folder); !others.empty()) {
+        text += table_row("kept", others + ": of before, not of this run");
+    }
+    return text;
 }
 
 namespace {
@@ -228,10 +243,14 @@ std::string most_stopping(const std::map<std::string, std::uint64_t>& stopped_by
 }
 
 std::string verdict_on_flight(const Execution& flight) {
-    const std::string name = flight.aero ? "The flight with direct aerodynamics " : "The flight in free air ";
-    switch (flight.outcome) {
+    return verdict_on_outcome(flight.outcome, flight.aero, "reaches the goal and hovers there.");
+}
+
+std::string verdict_on_outcome(Outcome outcome, bool aero, const std::string& ok) {
+    const std::string name = aero ? "The flight with direct aerodynamics " : "The flight in free air ";
+    switch (outcome) {
         case Outcome::ok:
-            return name + "reaches the goal and hovers there.";
+            return name + ok;
         case Outcome::collision:
             return name + "ends in a collision.";
         case Outcome::unstable:
@@ -409,14 +428,7 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
         text += table_row("", "goals on the way (a list of goals); in narrow scenes, set");
         text += table_row("", "planner.parameters.passage_share to 0.3.");
     }
-    text += table_row("files", (folder / "").string() + "{solution.json, trajectory.csv, tree.csv, effective.yaml}");
-    if (std::error_code ignored; std::filesystem::exists(folder / run_page_name, ignored)) {
-        text += table_row("page", (folder / run_page_name).string());
-    }
-    if (const std::string others = other_files_in(folder); !others.empty()) {
-        text += table_row("kept", others + ": of before, not of this run");
-    }
-    return text;
+    return text + file_rows(folder, "solution.json, trajectory.csv, tree.csv, effective.yaml");
 }
 
 ExitCode exit_code_of(const Solution& solution) {

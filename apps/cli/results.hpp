@@ -15,7 +15,15 @@
 namespace downwash::cli {
 
 /// Where results go unless --out says otherwise: downwash-out/NAME-VARIANT-SEED.
+[[nodiscard]] std::filesystem::path default_folder(const std::string& name, const PlannerSettings& planner);
 [[nodiscard]] std::filesystem::path default_folder(const Problem& problem);
+
+/// A length for people: "0.125 m".
+[[nodiscard]] std::string millimetres(double length_m);
+
+/// The last rows of a summary: which files there are, the page, and what else is in the folder. @param names of the
+/// files
+[[nodiscard]] std::string file_rows(const std::filesystem::path& folder, const std::string& names);
 
 /// The result of a search, in one sentence.
 [[nodiscard]] std::string verdict_on_search(const Solution& solution);
@@ -25,6 +33,9 @@ namespace downwash::cli {
 
 /// How a flight ended, in one sentence.
 [[nodiscard]] std::string verdict_on_flight(const Execution& flight);
+
+/// The same by an outcome. @param ok what a good flight does   @param aero whether surfaces acted on the rotors
+[[nodiscard]] std::string verdict_on_outcome(Outcome outcome, bool aero, const std::string& ok);
 
 /// What to warn of a flight through space of a scan that no sensor saw; nothing if it stays out of it.
 /// @param problem file that the warning names

@@ -20,13 +20,9 @@ bool is_there(const fs::path& file) {
     return fs::exists(file, ignored);
 }
 
-}  // namespace
-
-void add_force(Command command, bool& force) {
-    command.add_flag("--force", force, "replace what is in the folder; even a run of another problem");
-}
-
-RunFolder claimed_folder(const fs::path& path, const Problem& problem, const std::string& problem_file, bool force) {
+/// @param problem a Problem or SpaceProblem
+template <class AnyProblem>
+RunFolder claimed(const fs::path& path, const AnyProblem& problem, const std::string& problem_file, bool force) {
     try {
         return {path, problem, problem_file, force};
     } catch (const OtherRunError& error) {
@@ -37,6 +33,21 @@ RunFolder claimed_folder(const fs::path& path, const Problem& problem, const std
     } catch (const FolderError& error) {
         throw UsageError("{}; choose another folder with --out", error.what());
     }
+}
+
+}  // namespace
+
+void add_force(Command command, bool& force) {
+    command.add_flag("--force", force, "replace what is in the folder; even a run of another problem");
+}
+
+RunFolder claimed_folder(const fs::path& path, const Problem& problem, const std::string& problem_file, bool force) {
+    return claimed(path, problem, problem_file, force);
+}
+
+RunFolder claimed_folder(const fs::path& path, const SpaceProblem& problem, const std::string& problem_file,
+                         bool force) {
+    return claimed(path, problem, problem_file, force);
 }
 
 SourceFile source_of(const fs::path& folder, const RunRecord& run) {

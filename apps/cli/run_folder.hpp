@@ -17,6 +17,8 @@ void add_force(Command command, bool& force);
 /// The folder for the results of a run. @throws UsageError with remedies if RunFolder cannot be made
 [[nodiscard]] RunFolder claimed_folder(const std::filesystem::path& path, const Problem& problem,
                                        const std::string& problem_file, bool force);
+[[nodiscard]] RunFolder claimed_folder(const std::filesystem::path& path, const SpaceProblem& problem,
+                                       const std::string& problem_file, bool force);
 
 /// A file from which others are made, as it was read.
 struct SourceFile {

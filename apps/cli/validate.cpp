@@ -14,6 +14,7 @@
 #include "downwash/cli/validation.hpp"
 #include "downwash/cli/validation_files.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/results/claims.hpp"
 #include "downwash/results/solution_file.hpp"
 #include "downwash/simulation/world_parameters.hpp"
@@ -22,24 +23,6 @@ namespace downwash::cli {
 namespace {
 
 constexpr std::uint64_t most_runs = 10'000'000;
-
-void check_options(const ValidateArguments& given, const Problem& problem) {
-    if (given.runs && given.world) {
-        throw UsageError("--runs flies many worlds and --world one: expected one of them");
-    }
-    if (given.seed && !given.runs && !given.world) {
-        throw UsageError("--seed says which worlds there are: expected --runs or --world too");
-    }
-    if (given.runs && (*given.runs < 1 || *given.runs > most_runs)) {
-        throw UsageError("--runs is {}: expected 1 to {}", *given.runs, most_runs);
-    }
-    if ((given.runs || given.world) && !problem.uncertainty) {
-        throw UsageError(
-            "{} needs to know what is uncertain: {} has no `uncertainty:`, or `uncertainty: none`; `uncertainty: {{}}` "
-            "stands for the defaults",
-            given.runs ? "--runs" : "--world", given.problem);
-    }
-}
 
 World world_of(const Problem& problem, std::uint64_t seed, std::uint64_t index) {
     return draw_world(*problem.uncertainty, problem.robot, seed, index);
@@ -67,18 +50,38 @@ std::vector<judge::Disagreement> compare_flight(const judge::PlanJudge& judge, c
     return judge::disagreements_about_flight(said, claims.objective, judge.fly(claims.plan, conditions), tick_s);
 }
 
-/// Flies one of the same worlds; its number follows.
+}  // namespace
+
+void check_options(const ValidateArguments& given, bool has_uncertainty) {
+    if (given.runs && given.world) {
+        throw UsageError("--runs flies many worlds and --world one: expected one of them");
+    }
+    if (given.seed && !given.runs && !given.world) {
+        throw UsageError("--seed says which worlds there are: expected --runs or --world too");
+    }
+    if (given.runs && (*given.runs < 1 || *given.runs > most_runs)) {
+        throw UsageError("--runs is {}: expected 1 to {}", *given.runs, most_runs);
+    }
+    if ((given.runs || given.world) && !has_uncertainty) {
+        throw UsageError(
+            "{} needs to know what is uncertain: {} has no `uncertainty:`, or `uncertainty: none`; `uncertainty: {{}}` "
+            "stands for the defaults",
+            given.runs ? "--runs" : "--world", given.problem);
+    }
+}
+
 std::string command_for_one(const ValidateArguments& given) {
     return fmt::format("downwash validate {} --plan {}{} --world", shell_word(given.problem), shell_word(given.plan),
                        given.seed ? fmt::format(" --seed {}", *given.seed) : "");
 }
 
-}  // namespace
-
 ExitCode validate(const ValidateArguments& given) {
+    if (is_space_problem_file(given.problem)) {
+        return validate_in_space(given);
+    }
     Interruption interruption;
     const Problem problem = read_problem(given.problem, {}, given.is_quiet ? nullptr : print_outdated);
-    check_options(given, problem);
+    check_options(given, problem.uncertainty.has_value());
     const Claims claims = read_claims(plan_file(given.plan), problem);
     require_whole_plan(given.plan);
     const SourceFile source{plan_file(given.plan), read_whole_file(plan_file(given.plan), max_solution_bytes)};

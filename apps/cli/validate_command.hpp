@@ -24,4 +24,13 @@ void add_validate(Command program, Action& action, ExitCode (*run)(const Validat
 /// The command of downwash-validate.
 ExitCode validate(const ValidateArguments& given);
 
+/// The same for a problem in space.
+ExitCode validate_in_space(const ValidateArguments& given);
+
+/// @throws UsageError where options do not fit together or need an uncertainty that the problem has not got
+void check_options(const ValidateArguments& given, bool has_uncertainty);
+
+/// The command that flies one of the same worlds, up to its number.
+[[nodiscard]] std::string command_for_one(const ValidateArguments& given);
+
 }  // namespace downwash::cli

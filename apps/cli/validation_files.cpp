@@ -103,13 +103,18 @@ ValidationRecord record_of(const Validation& validation, const std::string& find
 
 }  // namespace
 
-void write_validation(const OutputFolder& folder, const Validation& validation, const judge::PlanJudge& judge,
-                      const Plan& plan, const ValidationSource& source) {
+std::string write_findings(const OutputFolder& folder, const Validation& validation, const SourceFile& solution) {
     const std::string findings = text_of(json_of(validation));
     // The page takes a while and is written when the findings are safe; that of before goes first.
     std::error_code ignored;
     std::filesystem::remove(folder.path() / page_name, ignored);
-    write_made_from(source.solution, folder.path(), {{findings_name, findings}});
+    write_made_from(solution, folder.path(), {{findings_name, findings}});
+    return findings;
+}
+
+void write_validation(const OutputFolder& folder, const Validation& validation, const judge::PlanJudge& judge,
+                      const Plan& plan, const ValidationSource& source) {
+    const std::string findings = write_findings(folder, validation, source.solution);
     if (!has_pages()) {
         return;
     }

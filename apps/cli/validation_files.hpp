@@ -23,6 +23,9 @@ struct ValidationSource {
     int threads = 1;
 };
 
+/// Writes validation.json; a page of before goes. @return its text
+std::string write_findings(const OutputFolder& folder, const Validation& validation, const SourceFile& solution);
+
 /// Writes validation.json and, if this build contains pages, validation.html. The page plays the flight that was judged
 /// and the worst flights of the worlds, which the judge flies again.
 void write_validation(const OutputFolder& folder, const Validation& validation, const judge::PlanJudge& judge,

@@ -1,11 +1,16 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/parameter.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/problems/key_reference.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/python/columns.hpp"
@@ -62,6 +67,21 @@ py::dict drawn_worlds(const CoreProblem& of, std::uint64_t count, const std::opt
     return columns_of(std::move(table));
 }
 
+/// The path that a wrong one most likely stands for, by all of it or by its last name; empty if none is near.
+std::string_view nearest_path(std::string_view wrong) {
+    std::vector<std::string_view> paths, names;
+    for (const KeyReference& key : key_reference(FileKind::problem)) {
+        paths.emplace_back(key.info.path);
+        names.push_back(last_name(key.info.path));
+    }
+    if (const std::string_view path = nearest_name(wrong, paths); !path.empty()) {
+        return path;
+    }
+    const std::string_view name = nearest_name(last_name(wrong), names);
+    const auto found = name.empty() ? names.end() : std::find(names.begin(), names.end(), name);
+    return found == names.end() ? std::string_view() : paths[static_cast<std::size_t>(found - names.begin())];
+}
+
 /// What the parameter table says of a key: meaning, expected value and default.
 py::dict explained(const std::string& path) {
     for (const KeyReference& key : key_reference(FileKind::problem)) {
@@ -73,7 +93,10 @@ py::dict explained(const std::string& path) {
             return text;
         }
     }
-    throw_input_error("is no key of a problem file", path);
+    const std::string_view nearest = nearest_path(path);
+    throw_input_error(
+        "is no key of a problem file" + (nearest.empty() ? "" : "; did you mean '" + std::string(nearest) + "'?"),
+        path);
 }
 
 }  // namespace

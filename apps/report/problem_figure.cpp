@@ -13,12 +13,10 @@
 namespace downwash {
 namespace {
 
-Ring rectangle(const Bounds& bounds) {
-    return {{bounds.x_low_m, bounds.z_low_m},
-            {bounds.x_high_m, bounds.z_low_m},
-            {bounds.x_high_m, bounds.z_high_m},
-            {bounds.x_low_m, bounds.z_high_m},
-            {bounds.x_low_m, bounds.z_low_m}};
+/// In two pieces: names of obstacles keep out of a line that is closed, and have room within the bounds.
+std::vector<Ring> sides_of(const Bounds& bounds) {
+    const PlanePoint low{bounds.x_low_m, bounds.z_low_m}, high{bounds.x_high_m, bounds.z_high_m};
+    return {{low, {high.x_m, low.z_m}, high}, {high, {low.x_m, high.z_m}, low}};
 }
 
 /// Bounds are those of the centre of mass: the arm and the rotors may reach beyond.
@@ -87,7 +85,7 @@ FieldFigure problem_figure(const Problem& problem, const FlightModel& model) {
                  problem.start.at[plane::arm]);
     const std::vector<std::string> names = goal_names(problem, std::nullopt);
     VehicleGoals of_vehicle = vehicle_goals(problem, names, robot);
-    figure.lines = {{"bounds of the centre of mass", {rectangle(problem.bounds)}, planned_color, 1.3, LineDash::dashed},
+    figure.lines = {{"bounds of the centre of mass", sides_of(problem.bounds), planned_color, 1.3, LineDash::dashed},
                     std::move(at_start)};
     if (!of_vehicle.lines.pieces.empty()) {
         figure.lines.push_back(std::move(of_vehicle.lines));

@@ -180,7 +180,7 @@ TEST_CASE("A problem in space is begun, checked and explained, and no plan is se
     CHECK_THAT(checked.out,
                Contains("my_problem.yaml: ok\n  hexa370_arm3: 2.56 kg, 3 joints, thrust 4.95 times the weight"));
     CHECK_THAT(checked.out, Contains("hexa370_arm3.yaml: ok\n  hexa370_arm3: "));
-    const auto robots = work.json("check", work / "my_problem.yaml").at("robots");
+    const auto robots = work.json("check", "my_problem.yaml").at("robots");
     REQUIRE(robots.size() == 1);
     CHECK(robots.at(0).at("joints") == 3);
     CHECK(robots.at(0).at("hover_joints_deg").size() == 3);

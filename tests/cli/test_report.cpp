@@ -135,7 +135,9 @@ TEST_CASE("Schemas, manual pages and completions come from the same tables") {
     CHECK(work.text("man/downwash-aeromap-plot.1") == work.run("manual aeromap plot").out);
     CHECK(work.text("man/downwash.1") == work.run("manual").out);
     CHECK(work.run("manual solve --all man").code == 2);
-    CHECK(work.run("completion elvish").code == 2);
+    check_rejected(work.run("completion elvish"), "SHELL is 'elvish': expected bash, zsh or fish\n");
+    check_rejected(work.run("explain seed --of problm"), "--of is 'problm': expected problem, robot, campaign, ");
+    check_rejected(work.run("explain seed --of problm"), "did you mean 'problem'?");
 }
 
 TEST_CASE("Completions offer commands, options, what options take, and files, in bash and zsh") {
@@ -172,12 +174,30 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
         {"downwash solve --out=x", ""},
         {"downwash solve --seed -", ""},
     };
+    // Where there are other files, those that are meant come first, and before options until one is given.
+    const Asked with_others[] = {
+        {"downwash solve ''", "only.yaml"},
+        {"downwash solve n", "notes.txt"},
+        {"downwash check o", "only.yaml"},
+        {"downwash check t", "table.csv"},
+        {"downwash aeromap fit ''", "table.csv"},
+        {"downwash replan only.yaml --plan ''", "solution.json"},
+        {"downwash replan only.yaml --plan=s", "--plan=solution.json"},
+        {"downwash solve only.yaml --no", "--no-cache"},
+        {"downwash planners ''", "--help|--json"},
+        {"downwash explain planner.sa", "planner.safety_margin_m"},
+    };
     std::string questions = "ask() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); ";
     questions +=
         "for PREFIX; do :; done; _downwash; (IFS='|'; echo \"${COMPREPLY[*]}\"); }\n";  // zsh finds files by PREFIX
     questions += "cd '" + work.in_run().string() + "' && touch one.yaml 'two words.yaml' 'three*.yaml'\n";
     std::string expected;
     for (const Asked& asked : all) {
+        questions += std::string("ask ") + asked.words + "\n";
+        expected += std::string(asked.offered) + "\n";
+    }
+    questions += "mkdir -p others && cd others && touch only.yaml table.csv solution.json notes.txt\n";
+    for (const Asked& asked : with_others) {
         questions += std::string("ask ") + asked.words + "\n";
         expected += std::string(asked.offered) + "\n";
     }
@@ -202,7 +222,7 @@ TEST_CASE("Completions for fish offer commands, options and what options take") 
     CHECK_THAT(script,
                Contains("complete -c downwash -n 'test (__downwash_command) = \"downwash\"' -f -a 'solve' -d ") &&
                    Contains(in_solve + "-l seed -r -d ") &&
-                   Contains(in_solve + "-l variant -x -a 'mp-arm mp-arm-da mp-arm-ada' -d ") &&
+                   Contains(in_solve + "-l variant -r -f -a 'mp-arm mp-arm-da mp-arm-ada' -d ") &&
                    Contains("\"downwash aeromap plot\"") && Contains(in_solve + "-l out -s o -r "));
     if (std::system("command -v fish >/dev/null") != 0) {
         return;

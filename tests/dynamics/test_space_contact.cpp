@@ -300,7 +300,7 @@ TEST_CASE("Impacts of frame and arm against surfaces of any slope lose energy, a
     }
 }
 
-TEST_CASE("Far from a surface a tick is one step, the same as without it; near it, more steps change little") {
+TEST_CASE("Far from a surface a tick is one step, the same as without it, and near it more steps change little") {
     const auto model = box_model();
     SpaceContact contact;
     contact.normal = {0, 0, -1};

@@ -312,7 +312,7 @@ TEST_CASE("A weighted fit believes each point by its sigma") {
     points[4].sigma.reset();
     points[4].line = 12;
     CHECK(error_of(EffectModel::he, points, weighted) ==
-          "line 12 has no sigma; expected one for every measurement of a weighted fit");
+          "the measurements:12: no sigma; expected one for every measurement of a weighted fit");
 }
 
 TEST_CASE("Multirotor models are fitted with their neighbours") {
@@ -333,9 +333,13 @@ TEST_CASE("Multirotor models are fitted with their neighbours") {
 TEST_CASE("Fits that make no sense are errors") {
     const std::vector<Measurement> one = points_of({{1, 1.1}, {1, 1.12}});
     CHECK(error_of(EffectModel::he, one) ==
-          "the measurements have 1 different z_over_r; expected at least 2, one for each parameter of the model");
+          "the measurements: only 1 different z_over_r; expected at least 2, one for each parameter of the model");
+    FitOptions of_file;
+    of_file.source = "bench.csv";
+    CHECK(error_of(EffectModel::he, one, of_file) ==
+          "bench.csv: only 1 different z_over_r; expected at least 2, one for each parameter of the model");
     CHECK(error_of(EffectModel::he, one, fixing("b", 2)) == "none");
-    CHECK(error_of(EffectModel::he, {}) == "there are no measurements to fit");
+    CHECK(error_of(EffectModel::he, {}) == "the measurements: nothing to fit; expected at least one measurement");
     CHECK(error_of(EffectModel::table, one) == "a table has no parameters to fit; expected the name of a formula");
     CHECK(error_of(EffectModel::he, one, fixing("k1", 2)) == "the model he has no parameter 'k1' to be fixed");
     CHECK(error_of(EffectModel::he, one, fixing("b", 0)) ==

@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <functional>
 #include <limits>
-#include <stop_token>
 #include <vector>
 
 #include "../support/error_of.hpp"
@@ -10,51 +8,11 @@
 #include "../support/scratch_folder.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/planner/direct_flight.hpp"
-#include "downwash/planner/goal_search.hpp"
 #include "downwash/planner/solve.hpp"
+#include "searched_problems.hpp"
 
 using namespace downwash;
-
-namespace {
-
-constexpr Variant variants[] = {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada};
-
-Problem with(Variant variant, Problem problem = test::ceiling_problem()) {
-    problem.planner.variant = variant;
-    return problem;
-}
-
-/// Geometric planners need more iterations than those that fly.
-Problem with(Variant variant, std::uint64_t geometric_iterations, std::uint64_t flown_iterations) {
-    Problem problem = with(variant);
-    problem.planner.max_iterations = variant == Variant::mp_arm ? geometric_iterations : flown_iterations;
-    return problem;
-}
-
-/// Where the vehicle arrives and cannot hold.
-Problem right_under_the_ceiling() {
-    Problem problem = test::with_place(0, 5 - 0.06 - 0.16);
-    test::configuration(problem.goal).tolerance_m = 0.02;
-    problem.planner.safety_margin_m = 0.01;
-    return problem;
-}
-
-std::shared_ptr<const AeroMap> map_as_if(const Problem& problem, std::vector<Obstacle> obstacles) {
-    Problem other = problem;
-    other.obstacles = std::move(obstacles);
-    return make_flight_model(other)->make_map(problem.bounds);
-}
-
-/// Searches with a map as if other obstacles were there: plans that fly through it may do otherwise when flown
-/// directly.
-planning::SearchResult solve_deceived(const Problem& problem, std::vector<Obstacle> obstacles) {
-    const auto model = make_flight_model(problem);
-    return planning::search_goal(problem, problem,
-                                 {problem.planner.variant, model, map_as_if(problem, std::move(obstacles))},
-                                 planning::Course::from_start(problem, *model), {}, {});
-}
-
-}  // namespace
+using namespace downwash::test;
 
 TEST_CASE("an aerodynamics-aware plan is reported only with a flight that held at the goal under direct aerodynamics") {
     for (std::uint32_t seed = 1; seed <= 5; ++seed) {
@@ -208,77 +166,6 @@ TEST_CASE("a goal point that only its tolerance makes reachable is reached") {
     }
 }
 
-TEST_CASE("a stop asked for before the search ends it at once") {
-    std::stop_source source;
-    source.request_stop();
-    SolveOptions options;
-    options.stop = source.get_token();
-    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_da}) {
-        Problem problem = with(variant);
-        problem.planner.max_iterations.reset();
-        const Solution solution = solve(problem, options);
-        CHECK(solution.interrupted);
-        CHECK(solution.status != Status::solved);
-        CHECK(solution.planning.iterations < 100);
-    }
-}
-
-TEST_CASE("a stop asked for in mid-search keeps the best plan so far") {
-    std::stop_source source;
-    SolveOptions options;
-    options.stop = source.get_token();
-    options.on_progress = [&](const Progress& progress) {
-        if (progress.best_cost) {
-            source.request_stop();
-        }
-    };
-    Problem problem = with(Variant::mp_arm_ada);
-    problem.planner.max_iterations.reset();
-    problem.planner.time_limit_s = 3600;  // longer than a test may take
-    const Solution solution = solve(problem, options);
-    CHECK(solution.interrupted);
-    CHECK(solution.status == Status::solved);
-}
-
-TEST_CASE("flights of absurd length are rejected, not flown") {
-    for (const Variant variant : variants) {
-        CAPTURE(name_of(variant));
-        Problem problem = with(variant, 50, 50);
-        problem.motion.max_speed_m_s = 1e-6;
-        const Solution solution = solve(problem);
-        CHECK(solution.status == Status::none);
-        CHECK_FALSE(solution.plan);
-        CHECK(solution.planning.improvements.empty());
-        if (variant != Variant::mp_arm) {
-            CHECK(solution.planning.rejected.at("too_long") > 0);
-            CHECK(solution.planning.simulated_s == 0);
-        }
-    }
-}
-
-TEST_CASE("the time limit is heeded within a long flight") {
-    Problem problem = with(Variant::mp_arm_da);
-    problem.motion.max_speed_m_s = 0.01;  // edges of ten minutes
-    problem.robot.controller.rate_hz = 500;
-    problem.planner.parameters = {{"first_batch_size", 1000.0}};
-    problem.planner.max_iterations.reset();
-    problem.planner.time_limit_s = 0.05;
-    // The first batch alone would take some 10^8 ticks, which no processor simulates in a twentieth of a second.
-    CHECK(solve(problem).planning.simulated_s * problem.robot.controller.rate_hz < 1e7);
-}
-
-TEST_CASE("the time limit is heeded within a long hold") {
-    Problem problem = with(Variant::mp_arm_ada);
-    problem.goal.hold_s = 360;
-    problem.robot.controller.rate_hz = 1000;
-    problem.planner.parameters = {{"first_batch_size", 1000.0}};
-    problem.planner.max_iterations.reset();
-    problem.planner.time_limit_s = 0.05;
-    // A hold takes 360,000 ticks, and the first batch has a hundred: no processor simulates ten in a twentieth of a
-    // second.
-    CHECK(solve(problem).planning.simulated_s * problem.robot.controller.rate_hz < 3.6e6);
-}
-
 TEST_CASE("without surface effects the aware planner is the dynamics-aware one") {
     Problem problem = with(Variant::mp_arm_ada);
     problem.aero.enabled = false;
@@ -334,114 +221,6 @@ TEST_CASE("a problem that cannot be planned leads to every error") {
     CHECK(test::errors_of([&] { return solve(problem); }).size() >= 2);
 }
 
-TEST_CASE("rejections are counted by cause") {
-    struct Provoked {
-        const char* cause;
-        std::function<void(Problem&)> provoke;
-    };
-    const Provoked all[] = {
-        {"collision", [](Problem& p) { p = test::slit_problem(); }},
-        {"flyable_area", [](Problem& p) { p.aero.min_distance_radii = 4; }},
-        {"saturation", [](Problem& p) { p.robot.rotors.max_thrust_n = 4.95 * 9.80665 / 4 * 1.02; }},
-        {"tracking", [](Problem& p) { test::gains_of(p.robot).max_tilt_rad = 0.01; }},
-        {"bounds",
-         [](Problem& p) {
-             p.start.at[plane::x] = p.bounds.x_low_m + 0.3;
-             p.start.velocity[plane::x] = -0.9;  // it cannot but overshoot the bound
-         }},
-        {"arm_limits",
-         [](Problem& p) {
-             test::limit_arm(p.robot, -3, test::quarter_turn + 0.05);
-             p.start.at[plane::arm] = test::quarter_turn;
-             p.start.velocity[plane::arm] = 0.7;  // it cannot but overshoot the limit
-         }},
-        {"goal_missed",
-         [](Problem& p) {
-             p = test::with_place(3, 4.3);  // where the ceiling lifts the vehicle, and nothing integrates the error
-             test::configuration(p.goal).tolerance_m = 0.01;
-             test::gains_of(p.robot).position_ki = 0;
-         }},
-    };
-    for (const auto& [cause, provoke] : all) {
-        CAPTURE(cause);
-        Problem problem = test::ceiling_problem();
-        provoke(problem);
-        problem.planner.max_iterations = 60;
-        const SearchRecord& record = solve(problem).planning;
-        CHECK(record.rejected.at(cause) > 0);
-        CHECK(record.rejected.size() == 10);
-    }
-}
-
-TEST_CASE("a search without a plan says how near it came and what stopped it") {
-    const Solution walled = solve(test::slit_problem());
-    CHECK(walled.status != Status::solved);
-    REQUIRE(walled.nearest_approach_m);
-    CHECK(*walled.nearest_approach_m > 0.15);  // not beyond the wall, 0.15 m thick on this side
-    REQUIRE(walled.obstruction);
-    CHECK(walled.obstruction->cause == "collision");
-    CHECK(walled.obstruction->at[plane::x] < 0);  // touching the wall from the side of the start
-
-    const Solution sucked_in = solve(right_under_the_ceiling());
-    CHECK(sucked_in.status != Status::solved);
-    REQUIRE(sucked_in.obstruction);
-    CHECK(sucked_in.obstruction->goal_distance_m < 0.5);
-
-    const Solution solved = solve(test::ceiling_problem());
-    REQUIRE(solved.status == Status::solved);
-    CHECK_FALSE(solved.nearest_approach_m);
-    CHECK_FALSE(solved.obstruction);
-}
-
-TEST_CASE("the obstacles that stop edges are counted by name, in every variant") {
-    for (const Variant variant : variants) {
-        CAPTURE(name_of(variant));
-        Problem problem = with(variant, test::slit_problem());
-        problem.planner.max_iterations = 200;
-        problem.obstacles.back().name = "";
-        const Solution solution = solve(problem);
-        const auto& stopped_by = solution.planning.stopped_by;
-        CHECK(stopped_by.contains("wall"));
-        CHECK(stopped_by.contains("environment.obstacles[3]"));
-        std::uint64_t sum = 0;
-        for (const auto& [obstacle, count] : stopped_by) {
-            sum += count;
-        }
-        CHECK(sum <= solution.planning.rejected.at("collision"));  // which counts samples, too
-        REQUIRE(solution.obstruction);
-        REQUIRE(solution.obstruction->obstacles.size() == 1);
-        CHECK(stopped_by.contains(solution.obstruction->obstacles.front()));
-    }
-    Problem lines = with(Variant::mp_arm, test::slit_problem());
-    lines.planner.algorithm = "rrt-connect";
-    CHECK(solve(lines).planning.stopped_by.contains("wall"));
-}
-
-TEST_CASE("a scene that closes the plane is told at once, with the obstacles that do") {
-    for (const Variant variant : variants) {
-        CAPTURE(name_of(variant));
-        const Solution solution = solve(with(variant, test::walled_problem()));
-        CHECK(solution.status == Status::none);
-        CHECK_FALSE(solution.plan);
-        CHECK(solution.planning.iterations == 0);
-        REQUIRE(solution.obstruction);
-        CHECK(solution.obstruction->cause == "closed_plane");
-        // The wall ends with the bounds. A body's middle may be above its centre of mass, and there the ceiling is.
-        CHECK(solution.obstruction->obstacles == std::vector<std::string>{"ceiling", "wall"});
-    }
-    Problem several = test::walled_problem();
-    several.goals_before = {test::tip_goal(-3, 4)};
-    CHECK(solve(several).missed_goal == std::optional<std::size_t>(2));
-    several.targets = {test::tip_goal(3, 4), test::tip_goal(4, 3)};
-    several.goals_before.clear();
-    several.goal = {};
-    const Solution none = solve(several);
-    REQUIRE(none.order);
-    CHECK(none.order->visits.empty());
-    CHECK(none.order->left_out.size() == 2);
-    CHECK(none.planning.iterations == 0);
-}
-
 TEST_CASE("a map of another scene, vehicle, model or place is refused") {
     const Problem problem = with(Variant::mp_arm_ada);
     const auto changed = [&](const auto& change) {
@@ -458,16 +237,6 @@ TEST_CASE("a map of another scene, vehicle, model or place is refused") {
     CHECK_THROWS_AS(solve(problem, changed([](Problem& other) { other.bounds.x_high_m += 1; })), std::invalid_argument);
     CHECK_THROWS_AS(solve(problem, changed([](Problem& other) { other.aero.grid_m *= 0.5; })), std::invalid_argument);
     CHECK(solve(problem, changed([](Problem& other) { other.planner.seed = 7; })).status == Status::solved);
-}
-
-TEST_CASE("where every plan was discarded, the direct flight is what stopped the search") {
-    Problem problem = right_under_the_ceiling();
-    const planning::SearchResult result = solve_deceived(problem, {});
-    CHECK(result.found.status != Status::solved);
-    CHECK(result.record.rejected.at("direct_flight") > 0);
-    REQUIRE(result.found.obstruction);
-    CHECK(result.found.obstruction->cause == "direct_flight");
-    CHECK(result.found.obstruction->at[plane::z] > 4);
 }
 
 TEST_CASE("a plan that is cheaper in the planner's model only, and not when flown, is no improvement") {

@@ -218,6 +218,50 @@ TEST_CASE("what a reader passed over and a surface that is open are warnings at 
     CHECK_THAT(found[0], Contains("1 of its 2 pieces is a sheet with nothing inside"));
 }
 
+TEST_CASE("a corner within an open edge is named, and a shell that faces both ways") {
+    const TestFolder folder;
+    using Catch::Matchers::Contains;
+    const std::string shape = "mesh: {file: pole.stl, center_m: [0, -2, 0]}";
+    // The first triangle in two, and its neighbour as it was: their common edge has a corner at its middle.
+    std::vector<Triangle> split = pole_triangles();
+    const auto [a, b, c] = split[0];
+    const Vector3 middle = a + 0.5 * (b - a);
+    split[0] = {a, middle, c};
+    split.push_back({middle, b, c});
+    folder.write("pole.stl", binary_stl(split));
+    std::vector<std::string> found = shape_warnings(folder, shape);
+    REQUIRE(found.size() == 1);
+    const std::string place = "[" + to_text(middle[0], 7) + ", " + to_text(middle[1], 7) + ", " + to_text(middle[2], 7);
+    CHECK_THAT(found[0], Contains("is open at 3 edges") && Contains("lies on such an edge at " + place) &&
+                             Contains("T-junction") && Contains("split edges at such corners"));
+
+    const auto shells = [](std::size_t turned) {
+        std::vector<Triangle> all = box_triangles({3, -4, 0}, {5, 4, 4});
+        std::vector<Triangle> inner = box_triangles({3.5, -3, 1}, {4.5, 3, 3});
+        for (std::size_t i = 0; i < turned; ++i) {
+            std::swap(inner[i][0], inner[i][1]);
+        }
+        all.insert(all.end(), inner.begin(), inner.end());
+        return all;
+    };
+    for (const auto& [turned, warned] : {std::pair<std::size_t, const char*>{0, ""},
+                                         {3, ""},
+                                         {4, "33.3 %"},
+                                         {5, "41.7 %"},
+                                         {7, "41.7 %"},
+                                         {9, ""},
+                                         {12, ""}}) {
+        CAPTURE(turned);
+        folder.write("pole.stl", binary_stl(shells(turned)));
+        found = shape_warnings(folder, "mesh: {file: pole.stl}");
+        REQUIRE(found.size() == (*warned == '\0' ? 0 : 1));
+        if (!found.empty()) {
+            CHECK_THAT(found[0], Contains(std::string("has a piece in which ") + warned + " of the triangles") &&
+                                     Contains("let all its triangles face away from what is solid"));
+        }
+    }
+}
+
 TEST_CASE("nobody starts inside a caisson, however its file is rounded, turned or doubled") {
     const TestFolder folder;
     Random random(1);

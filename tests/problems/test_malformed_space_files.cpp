@@ -169,8 +169,8 @@ TEST_CASE("what plans in a vertical plane says of a problem in space that plans 
     CHECK(
         folder.errors_of(good_space_problem, good_space_robot) ==
         "problem.yaml:5:26: environment.bounds.y_m makes this a problem in space, and plans are not searched for there "
-        "yet: `downwash check` reads it, and `downwash execute --plan` flies a given reference; without y_m it is a "
-        "problem in a vertical plane");
+        "yet: `downwash check` reads it, and `downwash execute --plan` and `downwash validate --plan` fly a given "
+        "reference; without y_m it is a problem in a vertical plane");
     CHECK(is_space_problem_file(folder / "problem.yaml"));
     CHECK(is_space_robot_file(folder / "robot.yaml"));
     folder.write("problem.yaml", good_problem);

@@ -43,6 +43,21 @@ TEST_CASE("a file that is no single YAML document of keys is an error") {
     }
 }
 
+TEST_CASE("UTF-16 is called by its name") {
+    const std::string text = "schema: downwash/problem/v1\nname: wide\n";
+    for (const bool is_little : {true, false}) {
+        std::string wide;
+        for (const char letter : text) {
+            wide += is_little ? std::string{letter, '\0'} : std::string{'\0', letter};
+        }
+        const std::string mark = is_little ? "\xFF\xFE" : "\xFE\xFF";
+        for (const std::string& bytes : {wide, mark + wide}) {
+            CHECK(errors_of_text(bytes) ==
+                  "problem.yaml:1:1: is UTF-16 text: expected YAML in UTF-8; save it in that encoding");
+        }
+    }
+}
+
 TEST_CASE("bytes that are no text are errors at their place") {
     using namespace std::string_literals;
     CHECK(errors_of_text("name: a\nstart: \0x"s) ==

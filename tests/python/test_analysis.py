@@ -86,7 +86,7 @@ def test_validate_says_what_the_program_says(tmp_path, planned, bridge, json_of)
 
 
 def test_too_many_runs_and_points_nowhere_are_refused(planned, bridge):
-    with pytest.raises(downwash.InputError, match="runs: is 1000000000000: expected 0 to 10000000"):
+    with pytest.raises(downwash.InputError, match="runs: is 1000000000000: expected a whole number from 0 to 10000000"):
         downwash.validate(bridge, planned, runs=10**12)
     with pytest.raises(downwash.InputError, match="points: hold a number that is not finite"):
         downwash.factor(bridge, [[np.nan, 1]])

@@ -23,6 +23,14 @@ def test_a_scene_shows_every_obstacle_where_it_is(bridge):
     expected = (x - width / 2, z - height / 2, width, height)
     assert any(np.allclose(shape.bounds, expected) for shape in shapes)
     assert ax.get_xlim() == tuple(bridge["environment.bounds.x_m"])
+    # The ground is below the bounds; the girders hang side by side.
+    words = {text.get_text(): text for text in ax.texts}
+    assert set(words) == {"deck", "pier", "walkway", "cross_girder", "left_girder, right_girder"}
+    assert words["pier"].get_color() == "white" and abs(words["pier"].get_position()[0] - x) < 1e-9
+    assert words["cross_girder"].get_color() == figures.style["outline"]
+    ax.figure.canvas.draw()
+    boxes = [text.get_window_extent() for text in ax.texts]
+    assert not any(a.overlaps(b) for i, a in enumerate(boxes) for b in boxes[:i])
 
 
 def test_a_map_shows_k_in_the_colours_of_our_pictures(bridge):
@@ -44,6 +52,7 @@ def test_a_plan_is_drawn_with_its_flight(bridge):
     assert lines["executed"].get_xdata().tolist() == solution.flight["x_m"].tolist()
     assert lines["executed"].get_color() == figures.style["flown"]
     assert lines["planned"].get_linestyle() == "--"
+    assert lines["planned"].get_zorder() > lines["executed"].get_zorder()
     assert len(ax.collections) == 4
     first_arm = ax.collections[0].get_segments()[-1]
     assert np.allclose(first_arm[-1], [solution.flight["ee_x_m"][0], solution.flight["ee_z_m"][0]])

@@ -52,6 +52,14 @@ TEST_CASE("the picture of a problem shows scene, bounds and goal, and the robot 
     CHECK(draw(figure, settings) == draw(problem_figure(problem, *model), settings));
 }
 
+TEST_CASE("the picture of a problem names what lies within its bounds") {
+    Problem problem = test::ceiling_problem();
+    problem.obstacles.push_back({"tank", Sphere{0.6}, {0, 0, 2.5}});
+    problem.obstacles.push_back(test::box("shelf", {3, 2, 0.6}, {-0.5, 0, 4}));
+    const auto model = make_flight_model(problem);
+    CHECK_THAT(test::texts_of(problem_figure(problem, *model)), Contains("tank") && Contains("shelf"));
+}
+
 TEST_CASE("goals of the vehicle are the robot there, or a line where a coordinate is free") {
     Problem problem = test::with_place(3, 4);
     const auto model = make_flight_model(problem);

@@ -138,6 +138,51 @@ class Campaign(page_test.BrowserTest):
                 for (_, _, right), (_, left, _) in zip(ticks, ticks[1:]):
                     self.assertLess(right, left, ticks)
 
+    def test_the_axis_of_a_short_search_has_numbers_below_a_second(self):
+        figures = sample_campaign.campaign()
+        for cell in figures["cells"]:
+            cell["cost_curve"] = [{"time_s": t, "cost": sample_campaign.spread([9000 / t])} for t in (0.67, 0.9, 3)]
+        self.show(figures)
+        ticks = [float(text) for text in self.every("#costs .panel:first-of-type .tick[text-anchor=middle]", "e.textContent")]
+        self.assertEqual(ticks, [0.7, 0.8, 1, 2, 3])
+
+    def test_words_of_rows_are_broken_on_a_phone_and_not_cut_off(self):
+        self.browser.resize(390, 844, mobile=True)
+        figures = sample_campaign.campaign()
+        self.show(figures)
+        words = self.every("#worlds .panel:first-of-type .row-name", "[e.textContent.slice(1, -1), e.getBBox().y, "
+                           "e.getBBox().x + e.getBBox().width, e.ownerSVGElement.viewBox.baseVal.width]")
+        self.assertEqual(" ".join(text for text, *_ in words[:2]),
+                         "mp-arm-ada: 0.0 % [0.0, 1.9], 20 plans flown, certified 20 of 20 seeds")
+        self.assertAlmostEqual(words[1][1] - words[0][1], 14, delta=0.5)
+        for _, _, right, width in words:
+            self.assertLess(right, width)
+        self.assertNotIn("…", self.js("return document.querySelector('.campaign-figures').textContent"))
+
+    def test_tiles_of_planners_share_the_width(self):
+        self.browser.resize(1440, 900)
+        self.show(sample_campaign.campaign())
+        left, right = self.one(".of-planners", "(b => [b.left, b.right])(e.getBoundingClientRect())")
+        seen = self.every(".of-planners > div", "(b => [b.left, b.right])(e.getBoundingClientRect())")
+        self.assertEqual(len(seen), 3)
+        self.assertAlmostEqual(seen[-1][1], right, delta=1)
+        for low, high in seen:
+            self.assertAlmostEqual(high - low, (right - left) / 3, delta=1)
+
+    def test_dots_of_seeds_are_seen_above_their_boxes(self):
+        self.show(sample_campaign.campaign())
+        order = self.js("return [...document.querySelectorAll('#flown-costs .panel:first-of-type .series-0')]"
+                        ".map(e => e.classList[0])")
+        self.assertLess(order.index("box"), order.index("seed-dot"))
+        self.assertEqual(order[-1], "median")
+        self.assertEqual(set(self.every("#flown-costs .seed-dot", "Number(e.getAttribute('r'))")), {3})
+
+    def test_an_empty_list_of_causes_is_none(self):
+        self.show(sample_campaign.campaign())
+        rows = self.every("[aria-label=Flights] tbody tr", "e.lastChild.textContent")
+        self.assertEqual(rows[0], "none")
+        self.assertTrue(rows[2].startswith("collision "))
+
     def test_no_zero_has_a_minus_sign(self):
         figures = sample_campaign.campaign()
         for cell in figures["cells"]:

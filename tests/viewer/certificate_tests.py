@@ -22,6 +22,14 @@ class Certificate(page_test.BrowserTest):
         self.assertIn("--world 17", self.one(".certificate .command code", "e.textContent"))
         self.assertEqual(len(self.every(".worst-worlds tbody tr", "1")), 10)
 
+    def test_its_command_stands_beside_the_worst_worlds(self):
+        self.browser.resize(1440, 900)
+        self.open("certified")
+        table = self.one(".certificate .worst-worlds", "e.getBoundingClientRect().toJSON()")
+        command = self.one(".certificate .command", "e.getBoundingClientRect().toJSON()")
+        self.assertGreater(command["left"], table["right"])
+        self.assertLess(command["bottom"], table["bottom"])
+
     def test_a_missing_one_says_why(self):
         self.open("uncertified")
         self.assertIn("A plan was found, but it is not certified", self.verdict())

@@ -73,6 +73,55 @@ class Looks(page_test.BrowserTest):
                     self.open(case)
                     self.assertLess(self.one(".scene-svg", "e.getBoundingClientRect().bottom"), height)
 
+    def test_a_problem_before_it_is_planned_is_seen_as_far_as_the_arm_reaches_beyond_its_bounds(self):
+        # The ground ends at 0 m, half a metre below the bounds; across, what is seen has the shape of the window.
+        (x_low, x_high), (z_low, z_high), room = (-12, 12), (0.5, 12), 1.25 * sample_page.ARM_M
+        for width, height in ((1440, 900), (390, 844)):
+            with self.subTest(width=width):
+                self.browser.resize(width, height, mobile=width < 700)
+                self.open("unplanned")
+                frame = self.one(".scene-svg .frame", "e.getBoundingClientRect().toJSON()")
+                low, high = self.pixels(x_low - room, z_low - room), self.pixels(x_high + room, z_high + room)
+                for (seen, wanted) in ((low[0], frame["left"]), (high[0], frame["right"]), (low[1], frame["bottom"]),
+                                       (high[1], frame["top"])):
+                    self.assertAlmostEqual(seen, wanted, delta=0.07 * frame["width"])
+                self.assertIn("ground", self.every(".word", "e.textContent.slice(1, -1)"))
+
+    def test_words_of_limits_are_not_crossed_by_lines(self):
+        # Clearances that come down to the margin everywhere leave no room for its name within the plot.
+        for swing_m, in_plot in ((0, 1), (1.9, 0)):
+            def change(report):
+                columns = report["_columns"]
+                columns["clearance_m"] = 2 + swing_m * np.cos(3 * columns["t_s"])
+                report["flight"] = sample_page.flight_json(list(columns), list(columns.values()))
+            self.open_changed("solved", change)
+            self.assertEqual(len(self.every("[data-plot=clearance] .limit-name", "1")), in_plot)
+            self.assertEqual("safety margin" in self.one("[data-plot=clearance] figcaption", "e.textContent"), not in_plot)
+            crossed = self.js(
+                "return [...document.querySelectorAll('.plot')].map(plot => ["
+                "[...plot.querySelectorAll('.limit-name')].map(e => e.getBBox()), "
+                "[...plot.querySelectorAll('.line')].flatMap(e => { const l = e.getTotalLength();"
+                "return Array.from({length: 2000}, (_, i) => e.getPointAtLength(i * l / 1999)); })])"
+                ".flatMap(([boxes, points]) => boxes.flatMap(b => points.filter(({x, y}) => "
+                "x > b.x && x < b.x + b.width && y > b.y + 3 && y < b.y + b.height - 3).map(({x, y}) => [x, y])))")
+            self.assertEqual(crossed, [])
+
+    def test_the_legend_of_thrust_ratios_is_one_sentence(self):
+        self.open("solved")
+        name = self.one(".color-bar-name", "e.textContent.replaceAll('\u00a0', ' ')")
+        self.assertRegex(name, r"^Thrust ratio K of rotor 1, [\d.]+ m beside the plane of motion: thrust over thrust in free air$")
+        self.assertEqual(self.one(".color-bar-note", "e.textContent"), "not flyable there")
+
+    def test_on_a_phone_the_playback_is_one_row(self):
+        self.browser.resize(390, 844, mobile=True)
+        self.open("solved")
+        boxes = [self.one(".playback " + part, "(b => [b.left, b.right, (b.top + b.bottom) / 2])(e.getBoundingClientRect())")
+                 for part in (".play", ".time", ".time-box", ".speed select")]
+        for (_, right, middle), (left, _, other) in zip(boxes, boxes[1:]):
+            self.assertLessEqual(right, left)
+            self.assertAlmostEqual(middle, other, delta=12)
+        self.assertGreater(boxes[1][1] - boxes[1][0], 120)
+
     def test_playback_stands_in_the_first_screen_too(self):
         for width, height in ((1440, 900), (390, 844)):
             with self.subTest(width=width):
@@ -352,6 +401,37 @@ class InThreeDimensions(page_test.BrowserTest):
                 self.assertAlmostEqual(corner[2], z_m, delta=0.002)
         self.assertLess(free[1][1] - free[0][1], 0.05)
         self.assertIn("target 7", self.shown_names())
+
+    def test_goals_have_rings_that_nothing_hides(self):
+        self.open("solids")
+        self.open_3d()
+        time.sleep(0.3)
+        stage = self.one(".stage", "e.getBoundingClientRect().toJSON()")
+        rings = self.every(".goal-ring3d", "(b => [b.left + b.width / 2, b.top + b.height / 2, b.width])"
+                                           "(e.getBoundingClientRect())")
+        goals = self.js("return downwash.report.goals.map(({x_m, z_m}) => document.querySelector('.stage').view.seen_at(x_m, z_m))")
+        self.assertEqual(len(rings), len(goals))
+        for (x, y, width), (across, down) in zip(rings, goals):
+            self.assertAlmostEqual(x, stage["left"] + across * stage["width"], delta=1.5)
+            self.assertAlmostEqual(y, stage["top"] + down * stage["height"], delta=1.5)
+            self.assertAlmostEqual(width, 18, delta=0.5)
+
+    def test_names_of_what_is_behind_something_are_faint(self):
+        # The tank is behind the pier; a wall before the plane hides the pipe as well.
+        def add_wall(report):
+            report["scene"]["obstacles"].append(sample_page.box("wall", [8, 5, 1.3], [-3, -2.4, 6.55]))
+        self.open_changed("solids", add_wall)
+        self.open_3d()
+        faint = lambda: {text.strip("\u2068\u2069"): float(opacity) < 1 for text, opacity in
+                         self.every(".name3d", "[e.textContent, getComputedStyle(e).opacity]")}
+        time.sleep(0.3)
+        seen = faint()
+        self.assertEqual([name for name in ("tank", "pipe", "wall", "pier", "deck") if seen[name]], ["tank", "pipe"])
+        self.open("solids")
+        self.open_3d()
+        time.sleep(0.3)
+        seen = faint()
+        self.assertEqual([name for name in ("tank", "pipe", "pier", "deck") if seen[name]], ["tank"])
 
     def test_very_many_obstacles_are_drawn_without_names(self):
         self.open_changed("solids", sample_page.add_very_many_obstacles)

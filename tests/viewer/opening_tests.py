@@ -29,6 +29,8 @@ class Opening(page_test.BrowserTest):
         self.assertEqual(self.js("return document.querySelectorAll('.figures, .search, .plots, .playback').length"), 0)
         self.assertEqual(self.js("return document.querySelectorAll('.scene-svg .at-start').length"), 1)
         self.assertEqual(self.js("return document.querySelectorAll('.open-3d').length"), 1)
+        self.assertEqual(self.one(".verdict p code", "e.textContent"), "downwash check")
+        self.assertNotIn("`", self.one(".verdict", "e.textContent"))
 
     def test_forbids_requests(self):
         self.open("solved")

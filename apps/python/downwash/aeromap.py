@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import checked
+from ._arguments import checked, numbers
 from .problem import Path, Problem
 
 __all__ = ["AeroMap", "factor", "is_flyable"]
@@ -26,7 +26,7 @@ def factor(
     rotor: number of the rotor, from 1
     threads: number of threads; default: one per processor
     """
-    return _core.factor(problem._core, np.asarray(points, dtype=np.float64), rotor, threads or 0)
+    return _core.factor(problem._core, numbers("points", points), rotor, threads or 0)
 
 
 @checked()
@@ -34,7 +34,7 @@ def is_flyable(
     problem: Problem, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None
 ) -> npt.NDArray[np.bool_]:
     """Whether the disc of a level rotor keeps its distance from every obstacle. Parameters as of `factor`."""
-    return _core.is_flyable(problem._core, np.asarray(points, dtype=np.float64), rotor, threads or 0)
+    return _core.is_flyable(problem._core, numbers("points", points), rotor, threads or 0)
 
 
 class AeroMap:
@@ -84,12 +84,12 @@ class AeroMap:
 
         Outside the extent it is evaluated directly. K means nothing where `is_flyable` is False.
         """
-        return self._core.factor(np.asarray(points, dtype=np.float64), rotor, threads or 0)
+        return self._core.factor(numbers("points", points), rotor, threads or 0)
 
     @checked()
     def is_flyable(self, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None) -> npt.NDArray[np.bool_]:
         """Whether hubs in plane coordinates are inside the flyable area."""
-        return self._core.is_flyable(np.asarray(points, dtype=np.float64), rotor, threads or 0)
+        return self._core.is_flyable(numbers("points", points), rotor, threads or 0)
 
     @checked()
     def arrays(self, rotor: int = 1) -> Dict[str, npt.NDArray[np.generic]]:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import checked
+from ._arguments import checked, numbers
 from .problem import Problem
 from .solution import Solution, StopSignal
 
@@ -27,7 +27,7 @@ def hold(
     Returns the figures of `downwash aeromap hold --json` (docs/hold.md) as columns: `verdict`, `limit`, the effect of
     the surfaces, the trim (`reference_x_m`, ...) and the stability. What a verdict leaves undefined is NaN.
     """
-    columns, verdicts, limits = _core.hold(problem._core, np.asarray(points, dtype=np.float64), arm_deg, threads or 0)
+    columns, verdicts, limits = _core.hold(problem._core, numbers("points", points), arm_deg, threads or 0)
     table: Dict[str, npt.NDArray[Any]] = dict(columns)
     table["verdict"] = np.array(verdicts, dtype=str)
     table["limit"] = np.array(limits, dtype=str)

@@ -42,9 +42,40 @@ def _path(rings: Sequence[npt.NDArray[np.float64]]) -> Any:
     return Path.make_compound_path(*(Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings))
 
 
+def _add_names(outlines: Sequence[Any], ax: Any) -> None:
+    """The name of every obstacle that is seen, within it or beside it; those with the same outline share a place."""
+    low, high = (np.array(limits) for limits in zip(ax.get_xlim(), ax.get_ylim()))
+    points_per_m = np.min(ax.get_window_extent().size / ax.figure.dpi * 72 / (high - low))
+    boxes: dict[tuple[Any, ...], list[str]] = {}
+    for name, is_cut, rings, lines in outlines:
+        corners = np.vstack([*rings, *lines]) if rings or lines else np.empty((0, 2))
+        if name and len(corners):
+            seen = np.clip(corners, low, high)
+            if np.all(np.ptp(seen, axis=0) > 0):
+                box = tuple(np.round([*seen.min(axis=0), *seen.max(axis=0)], 4))
+                boxes.setdefault((is_cut and len(rings) > 0, *box), []).append(name)
+    taken = [(np.array(box[:2]), np.array(box[2:])) for is_filled, *box in boxes if is_filled]
+    for (is_filled, *box), names in boxes.items():
+        text = ", ".join(names)
+        half = np.array([2.5 * len(text) + 2, 5]) / points_per_m
+        least, most = np.array(box[:2]), np.array(box[2:])
+        middle, room = (least + most) / 2, (most - least) / 2 - half
+        within = [middle + [share * room[0], 0] for share in (0, -0.5, 0.5)] if np.all(room > 0) else []
+        beside = [np.array([middle[0], z]) for z in (least[1] - half[1], most[1] + half[1])]
+        for at in [*within, *beside]:
+            is_within = any(at is each for each in within)
+            others = [each for each in taken if not (is_within and np.array_equal(each, (least, most)))]
+            covers = any(np.all(at - half < top) and np.all(bottom < at + half) for bottom, top in others)
+            if not covers and np.all(at - half >= low) and np.all(at + half <= high):
+                color = "white" if is_filled and is_within else style["outline"]
+                ax.text(*at, text, ha="center", va="center", color=color, fontsize=8, family=style["font"], zorder=2.5)
+                taken.append((at - half, at + half))
+                break
+
+
 @checked()
 def scene(problem: Problem, ax: Any = None) -> Any:
-    """Draws the obstacles: filled where the plane of motion cuts them, dashed where they stand beside it."""
+    """Draws the obstacles with their names: filled where the plane of motion cuts them, dashed where they are beside it."""
     from matplotlib.patches import PathPatch
 
     ax = _new_axes(problem, ax)
@@ -52,12 +83,14 @@ def scene(problem: Problem, ax: Any = None) -> Any:
         True: {"label": "obstacle", "facecolor": style["obstacle"], "edgecolor": style["outline"], "zorder": 2},
         False: {"label": "obstacle beside the plane, projected", "fill": False, "linestyle": "--"},
     }
-    for _, is_cut, rings, lines in _core.outlines(problem._core):
+    outlines = _core.outlines(problem._core)
+    for _, is_cut, rings, lines in outlines:
         for line in lines:
             ax.plot(line[:, 0], line[:, 1], color=style["outline"], linewidth=1)
         if rings:
             ax.add_patch(PathPatch(_path(rings), **looks[is_cut]))
             looks[is_cut]["label"] = None  # once in the legend
+    _add_names(outlines, ax)
     return ax
 
 
@@ -114,7 +147,7 @@ def _robot(problem: Problem, x_m: float, z_m: float, pitch_rad: float, arm_rad: 
 
 @checked()
 def plan(solution: Solution, ax: Any = None, *, robots: int = 8, with_scene: bool = True) -> Any:
-    """Draws the plan (dashed) and its executed flight, with the vehicle and its arm at equal intervals of time.
+    """Draws the plan (dashed, on top) and its executed flight, with the vehicle and its arm at equal intervals of time.
 
     robots: how many times the vehicle is drawn
     """
@@ -124,9 +157,9 @@ def plan(solution: Solution, ax: Any = None, *, robots: int = 8, with_scene: boo
     planned, flight = solution.plan, solution.flight
     if planned is not None:
         way = (flight["ref_x_m"], flight["ref_z_m"]) if flight is not None else (planned["x_m"], planned["z_m"])
-        ax.plot(*way, color=style["planned"], linestyle="--", linewidth=1.2, label="planned")
+        ax.plot(*way, color=style["planned"], linestyle="--", linewidth=1.2, label="planned", zorder=4)
     if flight is not None:
-        ax.plot(flight["x_m"], flight["z_m"], color=style["flown"], linewidth=1.5, label="executed")
+        ax.plot(flight["x_m"], flight["z_m"], color=style["flown"], linewidth=1.5, label="executed", zorder=3)
         ax.plot(
             flight["ee_x_m"], flight["ee_z_m"], color=style["end_effector"], linewidth=1, label="end effector, executed"
         )

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arguments import checked
+from ._arguments import checked, numbers
 from .errors import InputError, ProblemError
 from .problem import Path, Problem, _without_lines, _yaml
 from .solution import Columns, Progress, Solution, StopSignal, _teller
@@ -142,7 +142,7 @@ def _knots(plan: Mapping[str, npt.ArrayLike]) -> npt.NDArray[np.float64]:
     missing = [name for name in _KNOT if name not in plan]
     if missing:
         raise InputError(f"the plan has no {', '.join(missing)}: expected the columns of solution.plan")
-    columns = [np.atleast_1d(np.asarray(plan[name], dtype=np.float64)) for name in _KNOT]
+    columns = [np.atleast_1d(numbers(f"plan[{name!r}]", plan[name])) for name in _KNOT]
     if any(column.shape != columns[0].shape or column.ndim != 1 for column in columns):
         raise InputError("the columns of the plan are not equally long")
     return np.column_stack(columns)
@@ -188,7 +188,7 @@ class Planner:
         """
         return _solution_of(self._core.solve(None if on_progress is None else _teller(on_progress), stop))
 
-    @checked(("goal", "time_limit_s", "max_iterations"))
+    @checked(("goal", "max_iterations"))
     def replan(
         self,
         start: Start,
@@ -249,6 +249,7 @@ class Planner:
         """The reference of a plan at a tick; after its last knot that one."""
         return ReferencePoint(*self._core.reference_of(_knots(plan), tick))
 
+    @checked()
     def adopt(self, plan: Mapping[str, npt.ArrayLike]) -> None:
         """Takes a plan for the last one, from the problem's start to its goals, as one that was made before."""
         self._core.adopt(_knots(plan))

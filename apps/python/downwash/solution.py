@@ -235,7 +235,10 @@ def _teller(on_progress: Callable[[Progress], object]) -> Callable[..., object]:
 
 @checked()
 def read_solution(file: Path, problem: Problem) -> Solution:
-    """Reads the plan in a solution.json, or in the folder of a run, to fly it. Its flight stays None."""
+    """Reads the plan in a solution.json, or in the folder of a run, to fly it: `execute` makes its flight again.
+
+    `flight` is None and `tree` empty: only solution.json is read, not the files beside it.
+    """
     path = os.path.join(file, "solution.json") if os.path.isdir(file) else os.fspath(file)
     return Solution(_core.read_solution(path, problem._core), problem)
 

@@ -60,10 +60,10 @@ export function make_color_bar(map) {
     const label = `Colours of thrust ratios from ${number(limits[0], ".2~f")} to ${number(limits.at(-1), ".2~f")}; ` +
         "free air, 1, has the colour of the paper";
     return h(
-        "div", {class: "color-bar"}, h("div", {class: "color-bar-name"}, "Thrust ratio K: thrust over thrust in free air"),
+        "div", {class: "color-bar"}, h("div", {class: "color-bar-name"},
+                                  `Thrust ratio K of rotor ${map.rotor}, ${place(map.lateral_m)} beside the plane of motion: ` +
+                                      "thrust over thrust in free air"),
         h("div", {class: "color-bar-scale", role: "img", "aria-label": label}, bar("light"), bar("dark"),
           ticks.map(([limit, i]) => h("span", {class: "tick", style: `left: ${share(i)}%`}, number(limit, ".2~f")))),
-        h("div", {class: "color-bar-note"}, h("span", {class: "swatch blocked"}), "not flyable",
-          h("span", {class: "muted"},
-            `of rotor ${map.rotor} there, ${place(map.lateral_m)} beside the plane of motion`)));
+        h("div", {class: "color-bar-note"}, h("span", {class: "swatch blocked"}), "not flyable there"));
 }

@@ -58,7 +58,7 @@ function draw_axes(drawing, frame, width, height) {
 }
 
 /**
- * `drawing_of` is asked anew for whatever is shown; a text instead of a drawing says why there is none.
+ * `drawing_of(width)` is asked anew for whatever is shown; a text instead of a drawing says why there is none.
  * @param {{shown?: {follow: (changed: () => void) => void}}} model `shown`: what the reader may switch on and off
  */
 export function make_panel(model, title, drawing_of) {
@@ -68,7 +68,7 @@ export function make_panel(model, title, drawing_of) {
     let last_width = 0;
     const draw = (width) => {
         last_width = width;
-        const drawing = drawing_of();
+        const drawing = drawing_of(width);
         nothing.hidden = typeof drawing !== "string";
         [svg, save].forEach((element) => element.toggleAttribute("hidden", !nothing.hidden));
         if (!nothing.hidden) {

@@ -66,6 +66,7 @@ class TimePlot {
         ].filter(Number.isFinite);
         const far = (plot.limits ?? []).filter((limit) => !this.limits.includes(limit)).map((limit) => limit.value);
         this.values = plot.lines.map(() => h("span", {class: "value"}));
+        this.crossed = h("span", {class: "entry muted"});
         this.cursor = s("path", {class: "cursor"});
         this.dots = plot.lines.map((each) => s("circle", {class: `dot ${each.style}`, r: 3}));
         this.still = s("g");
@@ -80,6 +81,7 @@ class TimePlot {
               far.length > 0 ?
                   h("span", {class: "muted"}, `limit ±${number(Math.abs(far[0]), "~r")}${plot.unit}, beyond the plot`) :
                   null,
+              this.crossed,
               plot.lines.map(
                   (each, index) =>
                       h("span", {class: "entry"},
@@ -126,19 +128,19 @@ class TimePlot {
         parts.push(...ticks_y.map(
             (v) => s(
                 "text", {class: "tick", x: margin.left - 6, y: y(v), dy: "0.32em", "text-anchor": "end"}, text_y(v))));
+        this.crossed.replaceChildren();
         for (const limit of this.limits) {
             parts.push(s("path", {class: "limit", d: `M${margin.left} ${y(limit.value)}H${width - margin.right}`}));
             if (limit.name) {
-                const is_high = y(limit.value) < margin.top + 14;
+                const is_high = y(limit.value) < margin.top + 14, base = y(limit.value) + (is_high ? 11 : -4);
                 const text =
                     `${limit.name} ${number(limit.value, "~r")}${plot.unit === "°" ? "" : "\u00a0"}${plot.unit}`;
-                names.push(
-                    s("text", {
-                        class: "limit-name",
-                        x: this.#clear_place(limit.value, 6.2 * text.length, width),
-                        y: y(limit.value) + (is_high ? 11 : -4)
-                    },
-                      text));
+                const left = this.#clear_place(base, 6.2 * text.length, width);
+                if (left === null) {
+                    this.crossed.append(h("span", {class: "key of-limit", "aria-hidden": "true"}), text);
+                } else {
+                    names.push(s("text", {class: "limit-name", x: left, y: base}, text));
+                }
             }
         }
         plot.lines.forEach(
@@ -150,18 +152,19 @@ class TimePlot {
         this.still.replaceChildren(...parts, ...names);
     }
 
-    /** Where words of that length at a limit are farthest from the lines. */
-    #clear_place(limit, length, width) {
-        const t_s = this.model.data.t_s;
-        let best = margin.left + 5, farthest = -1;
+    /** Where words of that length on that base line are farthest from the lines; null where they would be crossed. */
+    #clear_place(base, length, width) {
+        const t_s = this.model.data.t_s, letters = {top: base - 9, bottom: base + 2};
+        let best = null, farthest = 0;
         for (let step = 0; step <= 8; ++step) {
             const left = margin.left + 5 + (step / 8) * (width - margin.right - margin.left - 9 - length);
             let least = Infinity;
             for (let i = 0; i < t_s.length; i += 5) {
                 const at = this.x(t_s[i]);
                 if (at >= left - 4 && at <= left + length + 4) {
-                    this.plot.lines.forEach(({values}) => {
-                        least = Math.min(least, Math.abs(values[i] - limit));
+                    this.plot.lines.filter(({values}) => Number.isFinite(values[i])).forEach(({values}) => {
+                        const y = this.y(values[i]);
+                        least = Math.min(least, Math.max(letters.top - y, y - letters.bottom));
                     });
                 }
             }

@@ -42,7 +42,7 @@ function draw_trouble(view, x_m, z_m) {
 /** @param space the view in space, of a page that has one */
 export function make_scene(model, clock, playback, space = null) {
     const {data, robot, rotor_groups, scene, solution} = model;
-    const view = new View(padded(scene.bounds), data ? opening_of(model) : padded(scene.bounds), describe(model));
+    const view = new View(padded(scene.bounds), opening_of(model), describe(model), playback !== null);
     make_hatches(view);
     const rows = data ? snapshot_rows(model) : [];
     const obstruction = solution.planning?.obstruction ?? null;

@@ -117,12 +117,13 @@ function blocked_lines(model) {
     return lines;
 }
 
-/** @returns {{kind: "good"|"bad"|"none", mark: string, title: string, lines: string[]}} */
+/** @returns {{kind: "good"|"bad"|"none", mark: string, title: string, lines: (string | (string|Node)[])[]}} */
 export function verdict_of(model) {
     const {solution, outcome} = model;
     const {execution} = solution;
     if (solution.status === "unplanned") {
-        const line = "The page shows the problem as `downwash check` read it. The vehicle stands at its start.";
+        const line = ["The page shows the problem as ", h("code", null, "downwash check"),
+                      " read it. The vehicle stands at its start."];
         return {kind: "none", mark: "○", title: "Not planned yet", lines: [line]};
     }
     if (solution.status !== "solved") {

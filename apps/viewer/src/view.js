@@ -15,8 +15,8 @@ const margin = {
 };
 const most_zoom = 60;
 
-/** Of the window: what stands above and the playback below have room in the same screen. */
-const most_of_window = 0.42;
+/** Of the window: what stands above and, with a flight, the playback below have room in the same screen. */
+const most_of_window = {with_playback: 0.42, alone: 0.56};
 
 /** @typedef {{x_m: [number, number], z_m: [number, number]}} Extent */
 
@@ -33,8 +33,10 @@ export class View {
      * @param {Extent} everything what one may pan over
      * @param {Extent} opening what is shown first
      * @param {string} description for those who do not see the picture
+     * @param {boolean} has_playback whether a playback stands below
      */
-    constructor(everything, opening, description) {
+    constructor(everything, opening, description, has_playback) {
+        this.most_of_window = has_playback ? most_of_window.with_playback : most_of_window.alone;
         this.everything = everything;
         this.opening = opening;
         this.followers = [];
@@ -115,7 +117,7 @@ export class View {
         const shape = (this.opening.z_m[1] - this.opening.z_m[0]) / (this.opening.x_m[1] - this.opening.x_m[0]);
         this.width = width;
         this.inner_width = width - margin.left - margin.right;
-        const most = Math.min(640, Math.max(240, most_of_window * window.innerHeight));
+        const most = Math.min(640, Math.max(240, this.most_of_window * window.innerHeight));
         this.inner_height =
             Math.round(Math.min(most, Math.max(200, this.inner_width * Math.min(1, Math.max(0.42, shape)))));
         this.height = this.inner_height + margin.top + margin.bottom;

@@ -8,7 +8,7 @@ import {outcome_name} from "./words.js";
 /** A card with the worlds, and below it a command that flies one of them again. */
 export function make_worst_worlds(worst, advice, command) {
     return h(
-        "div", {class: "card"}, h("h3", null, "Worst worlds"),
+        "div", {class: "card worst"}, h("h3", null, "Worst worlds"),
         h("div", {class: "scroll", tabindex: "0", role: "region", "aria-label": "Worst worlds"},
           h("table", {class: "numbers worst-worlds"},
             h("thead", null,
@@ -18,5 +18,5 @@ export function make_worst_worlds(worst, advice, command) {
                   ({world, outcome, min_clearance_m}) =>
                       h("tr", null, h("th", {scope: "row"}, String(world)), h("td", null, outcome_name(outcome)),
                         h("td", null, meters(min_clearance_m))))))),
-        h("p", {class: "muted"}, advice), make_command(command));
+        h("div", null, h("p", {class: "muted"}, advice), make_command(command)));
 }

@@ -5,7 +5,7 @@ import {number} from "../format.js";
 import {around, make_figure, make_panel} from "../panel.js";
 import {shown_cells} from "./model.js";
 import {percent_text} from "./tables.js";
-import {row_at, row_name} from "./rows.js";
+import {row_at, row_edges, row_name, row_names} from "./rows.js";
 
 const row_height = 46;
 const bar_height = 13;
@@ -32,7 +32,7 @@ function interval({low, high}, y, {x}) {
     return s("path", {class: "interval", d: `M${from} ${y - 4}v8M${from} ${y}H${to}M${to} ${y - 4}v8`});
 }
 
-function outcome_row(cell, y, frame) {
+function outcome_row(cell, name, y, frame) {
     let from = 0;
     const bars = parts_of(cell).map(({kind, text, count}) => {
         const left = frame.x(from / cell.solved.attempts);
@@ -47,27 +47,29 @@ function outcome_row(cell, y, frame) {
             },
             s("title", null, `${text}: ${count} of ${cell.solved.attempts}`));
     });
-    return [bars, interval(cell.held, y, frame), row_name(frame, y - 12, `${cell.planner.name}: ${told_of(cell)}`)];
+    return [bars, interval(cell.held, y, frame), row_name(frame, y - 12, name)];
 }
 
 const key = (kind, text) =>
     h("span", {class: "entry"}, h("span", {class: `key outcome-key ${kind}`, "aria-hidden": "true"}), text);
 
 export function make_outcomes(model) {
-    const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, () => {
+    const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, (width) => {
         const cells = shown_cells(model, experiment);
         if (cells.length === 0) {
             return "None of the planners shown has run here yet.";
         }
         const told = cells.map((cell) => `${cell.planner.name}: ${told_of(cell)}, of ${cell.solved.attempts} seeds`);
+        const {names, more} = row_names(cells.map((cell) => `${cell.planner.name}: ${told_of(cell)}`), width);
+        const height = row_height + more;
         return {
             label: `What became of the seeds. ${told.join("; ")}.`,
-            height: 42 + row_height * cells.length,
-            left: 12,
-            right: 16,
+            height: 42 + height * cells.length,
+            ...row_edges,
             x: {name: "share of seeds", domain: [0, 1], text: percent},
             y: null,
-            draw: (frame) => cells.map((cell, index) => outcome_row(cell, row_at(frame, index, row_height), frame)),
+            draw: (frame) =>
+                cells.map((cell, index) => outcome_row(cell, names[index], row_at(frame, index, height), frame)),
         };
     }));
     return make_figure(
@@ -85,16 +87,16 @@ export function make_outcomes(model) {
 
 const certified_text = ({hits, attempts}) => `certified ${number(hits, ",d")} of ${number(attempts, ",d")} seeds`;
 
-function worlds_row({planner, in_worlds: {failed, flown, tested, certified}}, y, frame) {
-    const at = frame.x(failed.hits / failed.attempts).toFixed(1);
+function worlds_text({planner, in_worlds: {failed, flown, tested, certified}}) {
     const plans = `${number(flown, ",d")} ${flown === 1 ? "plan" : "plans"}`;
-    const text = [
+    return [
         `${planner.name}: ${percent_text(failed)}`, `${plans} flown`, ...(tested > 0 ? [certified_text(certified)] : [])
     ].join(", ");
-    return [
-        interval(failed, y, frame), s("circle", {class: `dot ${planner.style}`, cx: at, cy: y, r: 4.5}),
-        row_name(frame, y - 12, text)
-    ];
+}
+
+function worlds_row({planner, in_worlds: {failed}}, y, frame) {
+    const at = frame.x(failed.hits / failed.attempts).toFixed(1);
+    return [interval(failed, y, frame), s("circle", {class: `dot ${planner.style}`, cx: at, cy: y, r: 4.5})];
 }
 
 /** Null where no plan was flown in worlds. */
@@ -104,7 +106,7 @@ export function make_worlds(model) {
     if (!model.has_worlds) {
         return null;
     }
-    const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, () => {
+    const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, (width) => {
         const cells = flown_in(experiment);
         if (cells.length === 0) {
             return "No plan of the planners shown was flown in worlds.";
@@ -112,20 +114,20 @@ export function make_worlds(model) {
         const told = cells.map(
             ({planner, in_worlds: {failed}}) => `${planner.name}: ${failed.hits} of ${failed.attempts} flights failed`);
         const without = shown_cells(model, experiment).filter((cell) => !cells.includes(cell));
-        told.push(...without.map(({planner}) => `${planner.name}: no plan to fly`));
+        const not_flown = without.map(({planner}) => `${planner.name}: no plan to fly`);
+        told.push(...not_flown);
+        const {names, more} = row_names([...cells.map(worlds_text), ...not_flown], width);
+        const height = row_height + more;
         const most = Math.max(...cells.map(({in_worlds}) => in_worlds.failed.high));
         return {
             label: `Flights in worlds. ${told.join("; ")}.`,
-            height: 42 + row_height * (cells.length + without.length),
-            left: 12,
-            right: 16,
+            height: 42 + height * names.length,
+            ...row_edges,
             x: {name: "share of flights that failed", domain: [0, around(0, most)[1]], text: (v) => number(v, ".2~%")},
             y: null,
             draw: (frame) => [
-                ...cells.map((cell, index) => worlds_row(cell, row_at(frame, index, row_height), frame)),
-                ...without.map(
-                    ({planner}, index) => row_name(
-                        frame, row_at(frame, cells.length + index, row_height) - 12, `${planner.name}: no plan to fly`))
+                ...cells.map((cell, index) => worlds_row(cell, row_at(frame, index, height), frame)),
+                ...names.map((name, index) => row_name(frame, row_at(frame, index, height) - 12, name))
             ],
         };
     }));

@@ -18,7 +18,7 @@ function dots(values, y, frame, style) {
             class: `seed-dot ${style}`,
             cx: frame.x(value).toFixed(1),
             cy: (y + 12 * jitter(i)).toFixed(1),
-            r: values.length > 60 ? 1.3 : 2
+            r: values.length > 60 ? 1.6 : 3
         }) :
                                                []);
 }
@@ -26,10 +26,45 @@ function dots(values, y, frame, style) {
 /** Middle of a row's marks, below its words. */
 export const row_at = (frame, index, height) => frame.top + (index + 1) * height - 14;
 
-export function row_name(frame, y, text) {
-    const letters = Math.floor((frame.right - frame.left) / 6.3);
-    return s("text", {class: "row-name", x: frame.left, y}, isolated(text, letters));
+const line_height = 14;
+const most_lines = 3;
+
+/** Edges of a panel with rows: their words begin where their marks do. */
+export const row_edges = {
+    left: 12,
+    right: 16
+};
+
+/** A text in lines of so many letters at most, broken between words. */
+function broken(text, letters) {
+    const lines = [""];
+    for (const word of text.split(" ")) {
+        const last = lines[lines.length - 1], longer = last === "" ? word : `${last} ${word}`;
+        if ([...longer].length <= letters || last === "") {
+            lines[lines.length - 1] = longer;
+        } else if (lines.length < most_lines) {
+            lines.push(word);
+        } else {
+            lines[lines.length - 1] = longer;  // too long: it is cut off
+        }
+    }
+    return lines.map((line) => isolated(line, letters));
 }
+
+/**
+ * The words of rows in a panel of that width, and how much higher all rows are so that the longest has room.
+ * @param {string[]} texts
+ */
+export function row_names(texts, width) {
+    const letters = Math.floor((width - row_edges.left - row_edges.right) / 6.3);
+    const names = texts.map((text) => broken(text, letters));
+    return {names, more: line_height * (Math.max(1, ...names.map((lines) => lines.length)) - 1)};
+}
+
+/** Words of a row whose last line stands at `y`. */
+export const row_name = (frame, y, lines) => lines.map(
+    (line, i) =>
+        s("text", {class: "row-name", x: frame.left, y: y - line_height * (lines.length - 1 - i)}, line));
 
 function box(spread, y, frame, style) {
     const {x, right} = frame;
@@ -50,13 +85,16 @@ function box(spread, y, frame, style) {
             d: Number.isFinite(three) ? `M${begin} ${y - 7}H${end}V${y + 7}H${begin}Z` :
                                         `M${end} ${y - 7}H${begin}V${y + 7}H${end}`
         },
-          title),
-        Number.isFinite(median) ? s("path", {class: `median ${style}`, d: `M${place(median)} ${y - 8}v16`}) : []
+          title)
     ];
 }
 
+/** Above the dots, which would hide it. */
+const median_tick = (median, y, frame, style) =>
+    Number.isFinite(median) ? s("path", {class: `median ${style}`, d: `M${frame.x(median)} ${y - 8}v16`}) : [];
+
 function make_boxes(model, {id, title, note, measure, of_seeds, axis_of}) {
-    const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, () => {
+    const panels = model.experiments.map((experiment) => make_panel(model, experiment.name, (width) => {
         const cells = shown_cells(model, experiment);
         const all = cells.flatMap((cell) => [...cell.seeds[measure], ...Object.values(cell[measure])])
                         .filter((value) => Number.isFinite(value) && value > 0);
@@ -65,19 +103,21 @@ function make_boxes(model, {id, title, note, measure, of_seeds, axis_of}) {
         }
         const axis = axis_of(experiment);
         const told = cells.map(({planner, [measure]: spread}) => `${planner.name}: median ${plain(spread["50"])}`);
+        const {names, more} = row_names(cells.map((cell) => {
+            const {hits, attempts} = of_seeds(cell), without = attempts - hits;
+            return cell.planner.name + (without > 0 ? `, ${without} of ${attempts} without` : "");
+        }), width);
         return {
             label: `${title}. ${told.join("; ")}.`,
-            height: 42 + row_height * cells.length + 8,
-            left: 12,
-            right: 12,
+            height: 42 + (row_height + more) * cells.length + 8,
+            ...row_edges,
             x: {...axis, domain: around(Math.min(...all), Math.max(...all), {is_log: axis.is_log})},
             y: null,
             draw: (frame) => cells.map((cell, index) => {
-                const y = row_at(frame, index, row_height), {style, name} = cell.planner;
-                const {hits, attempts} = of_seeds(cell), without = attempts - hits;
+                const y = row_at(frame, index, row_height + more), {style} = cell.planner;
                 return [
-                    dots(cell.seeds[measure], y, frame, style), box(cell[measure], y, frame, style),
-                    row_name(frame, y - 12, name + (without > 0 ? `, ${without} of ${attempts} without` : ""))
+                    box(cell[measure], y, frame, style), dots(cell.seeds[measure], y, frame, style),
+                    median_tick(cell[measure]["50"], y, frame, style), row_name(frame, y - 12, names[index])
                 ];
             }),
         };
@@ -122,7 +162,7 @@ function make_pairs_of(model, measure, name, unit_for) {
                 return null;
             }
             const cell_of = (planner) => experiment.cells.find((cell) => cell.planner.name === planner);
-            return make_panel(model, experiment.name, () => {
+            return make_panel(model, experiment.name, (width) => {
                 const rows = compared.map((pair) => ({pair, first: cell_of(pair.first), second: cell_of(pair.second)}))
                                  .filter(({first, second}) => model.shown.has(first.planner) &&
                                              model.shown.has(second.planner))
@@ -135,11 +175,13 @@ function make_pairs_of(model, measure, name, unit_for) {
                 const told = rows.map(
                     ({pair}) => `${pair.first} against ${pair.second}: ${pair.first_smaller} to ${
                         pair.second_smaller} seeds, median difference ${plain(pair.median_difference)}`);
+                const {names, more} = row_names(rows.map(({pair}) => `${pair.first} − ${pair.second}`), width);
+                const counts = row_names(rows.map(
+                    ({pair}) => `smaller ${pair.first_smaller} : ${pair.second_smaller}, ${p_text(pair.sign_test_p)}`), width);
                 return {
                     label: `Differences on equal seeds. ${told.join("; ")}.`,
-                    height: 42 + pair_height * rows.length + 8,
-                    left: 12,
-                    right: 12,
+                    height: 42 + (pair_height + more) * rows.length + 8,
+                    ...row_edges,
                     x: {
                         name: `first − second${unit ? ` [${unit}]` : ""}`,
                         domain: around(Math.min(0, ...all), Math.max(0, ...all))
@@ -148,18 +190,11 @@ function make_pairs_of(model, measure, name, unit_for) {
                     draw: (frame) => [
                         s("path", {class: "zero", d: `M${frame.x(0)} ${frame.top}V${frame.bottom}`}),
                         rows.map(({pair, first, values}, index) => {
-                            const y = row_at(frame, index, pair_height), {style} = first.planner;
-                            const median = pair.median_difference;
+                            const y = row_at(frame, index, pair_height + more), {style} = first.planner;
                             return [
                                 dots(values, y, frame, style),
-                                median === null ?
-                                    [] :
-                                    s("path", {class: `median ${style}`, d: `M${frame.x(median)} ${y - 8}v16`}),
-                                row_name(frame, y - 27, `${pair.first} − ${pair.second}`),
-                                row_name(
-                                    frame, y - 13,
-                                    `smaller ${pair.first_smaller} : ${pair.second_smaller}, ${
-                                        p_text(pair.sign_test_p)}`)
+                                median_tick(pair.median_difference, y, frame, style),
+                                row_name(frame, y - 27, names[index]), row_name(frame, y - 13, counts.names[index])
                             ];
                         })
                     ],

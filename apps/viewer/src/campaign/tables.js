@@ -39,7 +39,7 @@ function cells_of(model) {
         (experiment) => experiment.cells.map((cell) => ({cell, place: [experiment.name, cell.planner.name]})));
 }
 
-const causes = (counts) => Object.entries(counts).map(([cause, count]) => `${cause} ${count}`).join(", ");
+const causes = (counts) => Object.entries(counts).map(([cause, count]) => `${cause} ${count}`).join(", ") || "none";
 
 function flights_table(model) {
     return table(

@@ -44,7 +44,12 @@ const opacities = {
     projection: 0.25
 };
 
+/** Of more triangles than these a ray would meet too many at every turn of the view. */
+const most_met_triangles = 2000;
+
+/** @returns {Map<object, three.Object3D>} the bodies of the obstacles that are hardly seen through */
 function draw_obstacles(world, obstacles, paint) {
+    const bodies = new Map();
     const together = {section: [], projection: []};
     for (const obstacle of obstacles) {
         const {solid, section, projection} = obstacle;
@@ -52,7 +57,11 @@ function draw_obstacles(world, obstacles, paint) {
         if (solid && are_many(obstacles)) {
             together[name].push(solid);
         } else if (solid) {
-            world.add(draw_solid(solid, name, paint, opacities[name]));
+            const body = draw_solid(solid, name, paint, opacities[name]);
+            world.add(body);
+            if (name === "section" && !(solid.mesh?.indices.length > 3 * most_met_triangles)) {
+                bodies.set(obstacle, body.children[0]);
+            }
         } else {
             // Too large a mesh for a page: its outline in the plane of motion stands for it.
             for (const ring of section.length > 0 ? section : projection) {
@@ -65,6 +74,7 @@ function draw_obstacles(world, obstacles, paint) {
             world.add(draw_together(solids, name, paint, opacities[name]));
         }
     }
+    return bodies;
 }
 
 /** As large as in the scene: a ball for a disc, flat in the plane of motion where x and z are judged one by one. */
@@ -125,7 +135,7 @@ export function start(stage, model, clock) {
     if (sheet) {
         world.add(sheet.sheet);
     }
-    draw_obstacles(world, scene.obstacles, paint);
+    const bodies = draw_obstacles(world, scene.obstacles, paint);
     const goals = model.goals.map((goal) => draw_goal(goal, scene.bounds, paint));
     world.add(...goals);
     const vehicle = draw_vehicle(robot, paint);
@@ -149,7 +159,7 @@ export function start(stage, model, clock) {
     const {radius_m, positions_m} = robot.rotors;
     const width_m = 2 * (radius_m + Math.max(...positions_m.map(([, y]) => Math.abs(y))));
     view = make_camera(canvas, extent, width_m, scene.obstacles, render);
-    names = make_names(names_of(model, grid, extent), vehicle.covered);
+    names = make_names(names_of(model, grid, extent), vehicle.covered, bodies);
     stage.replaceChildren(canvas, names.element);
 
     let is_framed = false;

@@ -24,7 +24,7 @@ function anchor_of(obstacle, extent) {
     return new three.Vector3(shared_middle(x_m, extent.x_m), y, shared_middle(z_m, extent.z_m));
 }
 
-/** @returns {{kind: string, text: string, at: three.Vector3}[]} the most important ones first */
+/** @returns {{kind: string, text: string, at: three.Vector3, obstacle?: object}[]} the most important ones first */
 export function names_of(model, grid, extent) {
     const {goals, scene, start} = model;
     const names = goals.map((goal, i) => {
@@ -45,6 +45,7 @@ export function names_of(model, grid, extent) {
         kind: is_cut(obstacle) ? "of-section" : "of-projection",
         text: isolated(obstacle.name.replace(/\s+/g, " "), 26),
         at: anchor_of(obstacle, extent),
+        obstacle,
     }));
     return [...names, ...obstacles];
 }
@@ -60,21 +61,43 @@ function box_around(points, camera, width, height) {
 }
 
 /**
- * Keeps the words where their points are, off what `covered()` gives: groups of points.
+ * Whether the camera sees a point through another obstacle than its own.
+ * @param {Map<object, three.Object3D>} bodies of the obstacles that are hardly seen through
+ */
+function is_behind({at, obstacle}, bodies, camera) {
+    const way = at.clone().sub(camera.position), far = way.length();
+    const ray = new three.Raycaster(camera.position, way.normalize(), 0, far);
+    return [...bodies].some(([other, body]) => other !== obstacle && ray.intersectObject(body).length > 0);
+}
+
+/**
+ * Keeps the words where their points are, off what `covered()` gives: groups of points. Goals have a ring besides, since
+ * they are small and often behind something. Words of what is behind something are faint and get out of the way.
+ * @param {Map<object, three.Object3D>} bodies of the obstacles that are hardly seen through
  * @returns {{element: HTMLElement, draw: (camera, width, height) => void}}
  */
-export function make_names(names, covered) {
+export function make_names(names, covered, bodies) {
     const words = names.map(({kind, text}) => h("span", {class: `name3d ${kind}`}, text));
-    const element = h("div", {class: "names3d", "aria-hidden": "true"}, words);
+    const rings = names.map(({kind}) => (kind === "of-goal" ? h("span", {class: "goal-ring3d"}) : null));
+    const element = h("div", {class: "names3d", "aria-hidden": "true"}, rings, words);
     const draw = (camera, width, height) => {
         const placement = new Placement([0, 0, width, height]);
         covered().forEach((points) => placement.reserve(box_around(points, camera, width, height)));
-        names.forEach(({kind, text, at}, i) => {
+        const behind = names.map((name) => Boolean(name.obstacle) && is_behind(name, bodies, camera));
+        const in_turn = names.map((_, i) => i).sort((a, b) => behind[a] - behind[b] || a - b);
+        in_turn.forEach((i) => {
+            const {kind, text, at} = names[i];
             const seen = at.clone().project(camera);
             const x = (0.5 + seen.x / 2) * width, y = (0.5 - seen.y / 2) * height;
+            if (rings[i]) {
+                rings[i].style.display = Math.abs(seen.z) < 1 ? "" : "none";
+                rings[i].style.transform = `translate(-50%, -50%) translate(${x}px, ${y}px)`;
+            }
+            words[i].classList.toggle("behind", behind[i]);
             // Obstacles have room within for their names, points have it beside them.
+            const off = rings[i] ? 18 : 14;
             const around = [...(kind.startsWith("of-section") ? [[x, y]] : []),
-                            [x, y - 14], [x, y + 14], [x, y - 28], [x, y + 28]];
+                            [x, y - off], [x, y + off], [x, y - 28], [x, y + 28]];
             const found = Math.abs(seen.z) < 1 ? placement.find(text, around) : null;
             words[i].style.display = found ? "" : "none";
             if (found) {

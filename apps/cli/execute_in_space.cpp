@@ -1,0 +1,104 @@
+#include <fmt/core.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "downwash/base/text.hpp"
+#include "downwash/cli/execute_arguments.hpp"
+#include "downwash/cli/interruption.hpp"
+#include "downwash/cli/output.hpp"
+#include "downwash/cli/plan_origin.hpp"
+#include "downwash/cli/results.hpp"
+#include "downwash/cli/run_folder.hpp"
+#include "downwash/cli/usage_error.hpp"
+#include "downwash/problems/space_problem_model.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
+#include "downwash/results/space_solution_file.hpp"
+#include "downwash/simulation/space_world_parameters.hpp"
+
+namespace downwash::cli {
+namespace {
+
+/// The problem with the planner settings that the plan's file tells.
+SpaceProblem as_planned(SpaceProblem problem, const SpaceSolution& solution) {
+    problem.planner.variant = solution.variant;
+    problem.planner.objective = solution.objective;
+    problem.planner.seed = solution.seed;
+    return problem;
+}
+
+std::string summary_of(const SpaceSolution& solution, const std::filesystem::path& folder) {
+    const SpaceFlight& flight = *solution.execution;
+    std::string text = verdict_on_outcome(flight.outcome, solution.aero,
+                                          "comes to its end and hovers there. Goals in space are not judged yet.") +
+                       "\n\n";
+    text += table_row("status", std::string(name_of(solution.status)));
+    if (solution.execution_world) {
+        text += table_row(
+            "world", fmt::format("{} of seed {}", solution.execution_world->index, solution.execution_world->seed));
+    }
+    text +=
+        table_row("flight", fmt::format("{}, {}", name_of(flight.outcome),
+                                        solution.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
+    if (const auto cost = cost_of(flight, solution.objective)) {
+        const std::string_view unit = unit_of(solution.objective);
+        text += table_row("cost", fmt::format("{:.6g}{}{} executed", *cost, unit.empty() ? "" : " ", unit));
+    }
+    text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
+    text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
+    text += table_row("tracking error", millimetres(flight.max_tracking_error_m));
+    text += table_row("saturation", fmt::format("{:.3f}", flight.max_saturation));
+    text += table_row("min. clearance",
+                      std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
+    return text + file_rows(folder, "solution.json, trajectory.csv, effective.yaml");
+}
+
+}  // namespace
+
+ExitCode execute_in_space(const ExecuteArguments& given) {
+    if (given.planner.is_any()) {
+        throw UsageError("--margin is a setting of searches, and plans are not searched for in space yet");
+    }
+    Interruption interruption;
+    std::vector<LocatedError> warnings;
+    const auto note = noting(warnings, given.is_quiet);
+    SpaceProblem problem = read_space_problem(given.problem, {}, note);
+    const std::string plan = plan_file(given.plan);
+    SpaceSolution solution = read_solution(plan, problem, note);
+    require_whole_plan(given.plan);
+    problem = as_planned(std::move(problem), solution);
+    solution.execution_world = execution_world(given, problem.uncertainty.has_value(), problem.planner.seed);
+    const auto usual = default_folder(problem.name, problem.planner);
+    RunFolder folder =
+        claimed_folder(folder_beside_plan(given.out, usual, "-executed", plan), problem, given.problem, given.force);
+    const bool is_other = is_of_another_problem(plan, problem);
+    if (is_other) {
+        note({plan, 1, 1,
+              "this plan was made for another problem, or for another version of it: the status is that of this "
+              "flight"});
+    }
+    const SpaceProblemModel model(problem);
+    solution.aero = given.aero == "on";
+    SpaceExecutionSettings settings;
+    settings.aero = solution.aero;
+    if (const auto& world = solution.execution_world) {
+        settings.world = draw_space_world(*problem.uncertainty, problem.robot, world->seed, world->index);
+    }
+    solution.execution = model.execute(*solution.plan, settings);
+    const bool is_good = solution.execution->outcome == Outcome::ok;
+    if (is_other) {
+        solution.status = is_good ? Status::solved : Status::approximate;
+    }
+    interruption.expect_results();
+    const SpaceRunRecord record =
+        folder.write(problem, given.problem, warnings, solution, input_facts(problem, model.scene()));
+    fmt::print("{}", given.as_json ? record.solution_text : summary_of(solution, folder.path()));
+    if (interruption.code() != ExitCode::done) {
+        return interruption.code();
+    }
+    return is_good ? ExitCode::done : ExitCode::flight_failed;
+}
+
+}  // namespace downwash::cli

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/exit_code.hpp"
+#include "downwash/problems/designed_robot.hpp"
+#include "downwash/problems/space_problem.hpp"
+
+// What commands do with robots and problems in space that have the same names in the plane.
+
+namespace downwash::cli {
+
+/// `aeromap hold`.
+struct HoldInSpace {
+    std::string problem;
+    std::vector<std::array<double, 3>> places;
+    std::vector<double> from, to;  ///< three numbers each, or none
+    double step_m = 0.05;
+    std::optional<double> yaw_deg;
+    std::vector<double> joints_deg;
+    int threads = default_threads();
+    bool as_json = false;
+};
+[[nodiscard]] ExitCode hold_in_space(const HoldInSpace& given);
+
+/// `margins`.
+[[nodiscard]] ExitCode margins_in_space(const std::string& file, const std::vector<double>& joints_deg, bool as_json);
+
+/// `margins --design`.
+struct Design {
+    std::string robot;
+    SpaceBandwidths bandwidths;
+    std::optional<std::string> law;
+    bool as_json = false;
+};
+[[nodiscard]] ExitCode design_gains(const Design& given);
+
+/// Joint angles of --joints-deg [rad]; `otherwise` without them. @throws UsageError beyond the limits of the arm, or
+/// with another number of joints
+[[nodiscard]] std::vector<double> joints_option(const std::vector<double>& joints_deg, const SpaceRobot& robot,
+                                                const std::vector<double>& otherwise);
+
+}  // namespace downwash::cli

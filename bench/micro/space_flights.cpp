@@ -1,0 +1,153 @@
+// Ticks of flights in space: closed loop, law and plant, side by side in a pool and one at a time. `batch` in micro.cpp
+// is the yardstick: flights in the plane of the same run.
+
+#include <benchmark/benchmark.h>
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "../../tests/support/space_robots.hpp"
+#include "bridge.hpp"
+#include "downwash/simulation/space_pool.hpp"
+
+using namespace downwash;
+using bench::Bridge;
+
+namespace {
+
+enum class Air { calm, volume, worlds };
+
+/// Surfaces, whose volume it looks up for one flight.
+class InVolume final : public simulation::SpaceEffect {
+ public:
+    explicit InVolume(const SpaceVolumes& volumes) : field_(views_of(volumes)) {}
+    SidedFactor<double> at_rotor(int rotor, const dynamics::LaneVector<double>& hub_m) override {
+        return field_.at_rotor(rotor, hub_m);
+    }
+
+ private:
+    simulation::VolumeField<double> field_;
+};
+
+SpacePoolSetup setup_of(const SpaceRobot& robot, Air air) {
+    SpacePoolSetup setup{robot};
+    if (air != Air::calm) {
+        setup.volumes.rotor = &bench::volume_under_deck();
+        setup.aero.tilt_loss = Bridge::get().model->tick().tilt_loss;
+    }
+    return setup;
+}
+
+/// Worlds that differ in everything, with noise and gusts.
+const std::vector<SpaceWorld>& worlds() {
+    static const std::vector<SpaceWorld> all = [] {
+        std::vector<SpaceWorld> some(64);
+        for (std::size_t i = 0; i < some.size(); ++i) {
+            const double s = static_cast<double>(i) / 64 - 0.5;
+            SpaceWorld& world = some[i];
+            world.ceiling_scale = 0.2 * s;
+            world.mass_scale = 0.05 * s;
+            world.center_of_mass_m = {0.004 * s, -0.006 * s, 0};
+            world.thrust_scale = -0.04 * s;
+            world.scene_m = {0, 0.01 * s, 0.02 * s};
+            world.delay_s = 0.008 + 0.01 * s;
+            world.attitude_bias_rad = {0.004 * s, 0.002, 0};
+            world.wind_m_s = {s, 0.3, 0};
+            world.position_noise_m = 0.005;
+            world.gyro_noise_rad_s = 0.01;
+            world.gust_m_s = 0.3;
+            world.gust_length_level_m = 20;
+            world.gust_length_up_m = 5;
+            world.tape = i;
+        }
+        return some;
+    }();
+    return all;
+}
+
+/// Edges of 3 m and 4 s under the deck, 0.4 to 1 m below it.
+std::vector<SpaceFlightJob> edges(const SpacePool& pool, int joints, Air air) {
+    std::vector<SpaceFlightJob> jobs;
+    for (int i = 0; i < 64; ++i) {
+        const double s = i / 64.0;
+        SpacePoint from, to;
+        const Vector3 at_m = Bridge::get().model->plane().to_world(-6 + 6 * s, 0, 8.6 + 0.5 * s);
+        const Vector3 end_m = Bridge::get().model->plane().to_world(-3 + 6 * s, 0, 9.1 - 0.5 * s);
+        for (int axis = 0; axis < 3; ++axis) {
+            from.position[axis] = at_m[static_cast<std::size_t>(axis)];
+            to.position[axis] = end_m[static_cast<std::size_t>(axis)];
+        }
+        to.position[space::yaw] = 0.8 - s;
+        for (int joint = 0; joint < joints; ++joint) {
+            to.position[space::first_joint + joint] = 0.6 - s;
+        }
+        const SpaceWorld* const world = air == Air::worlds ? &worlds()[static_cast<std::size_t>(i)] : nullptr;
+        jobs.push_back({pool.state_at(test::motion_at_rest(from), world), {{{from, to, 400, 0.01}}}, world});
+    }
+    return jobs;
+}
+
+void side_by_side(benchmark::State& state, int joints, Air air, Instructions instructions, int threads) {
+    const SpaceRobot robot = test::space_robot(joints);
+    SpacePool pool(setup_of(robot, air), threads, instructions);
+    const std::vector<SpaceFlightJob> all = edges(pool, joints, air);
+    std::int64_t ticks = 0;
+    for ([[maybe_unused]] auto _ : state) {
+        std::vector<SpaceFlightJob> jobs = all;
+        pool.fly(jobs);
+        for (const SpaceFlightJob& job : jobs) {
+            ticks += job.legs[0].flight.ticks;
+        }
+    }
+    state.SetItemsProcessed(ticks);
+}
+
+void one_at_a_time(benchmark::State& state, int joints, Air air) {
+    const SpaceRobot robot = test::space_robot(joints);
+    const SpacePoolSetup setup = setup_of(robot, air);
+    const std::vector<SpaceFlightJob> all = edges(SpacePool(setup), joints, air);
+    InVolume volume(setup.volumes);
+    std::deque<std::unique_ptr<simulation::SpaceLoop>> loops;
+    for (const SpaceFlightJob& job : all) {
+        loops.push_back(simulation::make_space_loop(
+            {robot, job.world != nullptr ? *job.world : SpaceWorld{}, volume, setup.aero, /*is_refined=*/false}));
+    }
+    std::int64_t ticks = 0;
+    for ([[maybe_unused]] auto _ : state) {
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const SpaceSegment& segment = all[i].legs[0].segment;
+            loops[i]->start(test::motion_at_rest(segment.from()));
+            for (std::int64_t tick = 0; tick < segment.ticks(); ++tick) {
+                SpaceFlightRow row;
+                loops[i]->tick(tick, segment.at_tick(tick), row);
+            }
+            ticks += segment.ticks();
+        }
+    }
+    state.SetItemsProcessed(ticks);
+}
+
+/// With every set of instructions that there is here, with two threads, and one at a time.
+[[maybe_unused]] const bool flights_in_space_are_registered = [] {
+    constexpr const char* names[] = {"baseline", "avx2", "avx512"};
+    for (const int joints : {0, 2, 3}) {
+        for (const Air air : {Air::calm, Air::volume, Air::worlds}) {
+            const std::string variant = "flights_in_space/" + std::to_string(joints) + "_joints" +
+                                        (air == Air::calm     ? "_"
+                                         : air == Air::volume ? "_volume_"
+                                                              : "_in_worlds_");
+            benchmark::RegisterBenchmark((variant + "one_at_a_time").c_str(), one_at_a_time, joints, air);
+            for (const Instructions instructions : known_instructions()) {
+                benchmark::RegisterBenchmark((variant + names[static_cast<int>(instructions)]).c_str(), side_by_side,
+                                             joints, air, instructions, 1);
+            }
+            benchmark::RegisterBenchmark((variant + "two_threads").c_str(), side_by_side, joints, air,
+                                         best_instructions(), 2)
+                ->UseRealTime();
+        }
+    }
+    return true;
+}();
+
+}  // namespace

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "downwash/base/export.hpp"
+#include "downwash/base/stop_condition.hpp"
+#include "downwash/problems/space_problem.hpp"
+#include "downwash/scene/scene.hpp"
+#include "downwash/scene/space_checker.hpp"
+#include "downwash/simulation/space_flight.hpp"
+
+namespace downwash {
+
+/// The vehicle at the start of a problem, for a robot with any number of joints.
+[[nodiscard]] DOWNWASH_EXPORT SpaceMotion start_motion(const SpaceStart& start) noexcept;
+
+/// Whether nothing moves at the start and the vehicle is level, so that it may have hovered there for long.
+[[nodiscard]] DOWNWASH_EXPORT bool is_at_rest(const SpaceStart& start) noexcept;
+
+/// How many control ticks the last reference point is held; among alternatives of the last goal, the longest hold.
+/// @pre there is a goal
+[[nodiscard]] DOWNWASH_EXPORT std::int64_t hold_ticks(const SpaceProblem& problem);
+
+/// How to execute a plan of a problem in space.
+struct SpaceExecutionSettings {
+    bool aero = true;                 ///< false: as if there were no surface effects, and no flyable area
+    std::optional<SpaceWorld> world;  ///< empty: the nominal one. In a world a vehicle that starts at rest has hovered
+    StopCondition is_over;
+};
+
+/// A problem in space and all that its flights need and never change. Safe to share between threads.
+class DOWNWASH_EXPORT SpaceProblemModel {
+ public:
+    /// @pre space_problem_errors(problem) is empty
+    explicit SpaceProblemModel(SpaceProblem problem);
+
+    [[nodiscard]] const SpaceProblem& problem() const noexcept { return problem_; }
+    [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
+
+    /// Flies a plan from the start of the problem to the end of the hover after its last knot, with surface effects
+    /// evaluated directly.
+    /// @throws InputError if a model of surface effects cannot act in space, or the robot has more joints than this
+    /// library was built for; WorkStopped when `is_over` says so
+    /// @pre the plan has at least one knot, the robot's number of joints and its tick
+    [[nodiscard]] SpaceFlight execute(const SpacePlan& plan, const SpaceExecutionSettings& settings = {}) const;
+
+ private:
+    SpaceProblem problem_;
+    std::shared_ptr<const Scene> scene_;
+    SpaceChecker checker_;
+};
+
+}  // namespace downwash

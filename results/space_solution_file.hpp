@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/problems/input_facts.hpp"
+#include "downwash/problems/located_error.hpp"
+#include "downwash/problems/space_problem.hpp"
+#include "downwash/results/solution_file.hpp"
+#include "downwash/simulation/space_flight.hpp"
+
+// solution.json in space: the keys and the schema of the plane (solution_file.hpp), with the axes of space.
+
+namespace downwash {
+
+/// A plan in space, its flight, and the settings that it was asked with. Nothing searches in space: plans are given.
+struct SpaceSolution {
+    Status status = Status::solved;
+    bool interrupted = false;
+    Variant variant = Variant::mp_arm_ada;
+    std::string algorithm;
+    CostFunction objective;
+    std::uint32_t seed = 1;
+    int threads = 1;
+    std::optional<SpacePlan> plan;
+    std::optional<SpaceFlight> execution;           ///< the whole plan flown from the start of the problem
+    bool aero = true;                               ///< whether surfaces acted on the rotors in that flight
+    std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one
+};
+
+/// How a solution names its problem; see ProblemReference.
+struct SpaceProblemReference {
+    std::string name, file, sha256;
+    std::vector<LocatedError> warnings = {};
+    std::optional<SpaceInputFacts> inputs = {};
+};
+
+/// What a flight in space costs. Empty where the objective counts length or clearance, which flights in space do not
+/// sum up yet.
+[[nodiscard]] DOWNWASH_EXPORT std::optional<double> cost_of(const SpaceFlight& flight, const CostFunction& objective);
+
+/// The text of solution.json: see the solution_json() of a plan in the plane.
+[[nodiscard]] DOWNWASH_EXPORT std::string solution_json(const SpaceSolution& solution,
+                                                        const SpaceProblemReference& problem,
+                                                        const FileDigests& files = {});
+
+/// Reads a plan in space back, to fly it for `problem`. The execution stays empty. A plan written by hand needs
+/// `schema` and `plan.reference` alone; a knot without rates and accelerations rests. The rest is taken from the
+/// problem's settings.
+/// @param on_warning is told where the reference breaks the problem's `motion`, its bounds or the limits of a joint,
+/// and whether it ends in motion
+/// @throws ProblemFileError with every error: no solution file, no plan in it, a knot off the grid of control ticks or
+/// with other axes than the robot has, a reference that starts elsewhere than the problem does, waypoints that disagree
+/// with it
+[[nodiscard]] DOWNWASH_EXPORT SpaceSolution
+read_solution(const std::string& path, const SpaceProblem& problem,
+              const std::function<void(const LocatedError&)>& on_warning = {});
+
+}  // namespace downwash

@@ -1,0 +1,37 @@
+#pragma once
+
+// Private to simulation/.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "downwash/simulation/loop_margins.hpp"
+
+// A closed loop that was linearised at its hover, and what follows from it.
+
+namespace downwash::simulation {
+
+/// What past motions of one age do to a tick.
+struct LatePart {
+    int age = 0;        ///< in ticks, from 1
+    Eigen::MatrixXd a;  ///< a column for each number of the motion
+    Eigen::RowVectorXd c;
+};
+
+/// The closed loop from what is added to a command to that command, x' = A x + B u, y = C x, with the parts of what the
+/// controller sees late. A motion of that age is the first numbers of x so many ticks ago, so that x has no others.
+struct LinearLoop {
+    Eigen::MatrixXd a;
+    Eigen::VectorXd b;
+    Eigen::RowVectorXd c;
+    std::vector<LatePart> late;
+};
+
+/// Margins from samples of the loop's gain over rising frequencies, between which its logarithm is taken as linear.
+[[nodiscard]] LoopMargins margins_of(const LinearLoop& loop, double tick_s);
+
+/// The Jacobian of one tick with past motions among the numbers, as many as the late parts reach.
+/// @param a,late as of LinearLoop, without commands
+[[nodiscard]] Eigen::MatrixXd with_past(const Eigen::MatrixXd& a, const std::vector<LatePart>& late);
+
+}  // namespace downwash::simulation

@@ -1,0 +1,335 @@
+#pragma once
+
+// One lane of the kernel in space, as the flight of one job. Private: not installed.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "downwash/base/numbers.hpp"
+#include "downwash/simulation/space_flight.hpp"
+#include "downwash/simulation/space_flight_job.hpp"
+#include "downwash/simulation/space_kernel.hpp"
+#include "downwash/simulation/space_loop_of.hpp"
+#include "downwash/simulation/space_pool_setup.hpp"
+#include "downwash/simulation/space_rules.hpp"
+
+namespace downwash::simulation {
+
+/// Copies what vehicles with different numbers of joints have in common. What belongs to other joints stays.
+template <int from, int to>
+void copy_common(const SpaceFlightState<double, from>& state, SpaceFlightState<double, to>& out) {
+    constexpr int joints = std::min(from, to);
+    constexpr int memory =
+        std::min(number_count<double, SpaceLawMemory<double, from>>, number_count<double, SpaceLawMemory<double, to>>);
+    const auto copy_motion = [](const auto& then, auto& past) {
+        std::copy_n(then.q, dynamics::space_coordinates<joints>, past.q);
+        std::copy_n(then.u, dynamics::space_speeds<joints>, past.u);
+    };
+    copy_motion(state.plant, out.plant);
+    std::copy_n(state.plant.thrust_n, max_rotors, out.plant.thrust_n);
+    out.plant.energy_j = state.plant.energy_j;
+    std::copy_n(state.memory.number, memory, out.memory.number);
+    for (int i = 0; i < recent_ticks; ++i) {
+        copy_motion(state.world.past[i], out.world.past[i]);
+    }
+    std::copy_n(state.world.gust, 5, out.world.gust);
+    out.world.older.resize(state.world.older.size());
+    for (std::size_t i = 0; i < state.world.older.size(); ++i) {
+        copy_motion(state.world.older[i], out.world.older[i]);
+    }
+}
+
+/// A free motion is looked for up to this [m]. A larger one lets the robot fly farther before the next check; a smaller
+/// one is found faster.
+inline constexpr double max_free_motion_m = 0.5;
+
+/// How much free motion is left aside: distances are exact to 1e-8 m by our own geometry, good to a millimetre by FCL.
+[[nodiscard]] inline double free_motion_error_m(CollisionCheckerKind kind) noexcept {
+    return kind == CollisionCheckerKind::own ? 1e-7 : 0.002;
+}
+
+/// What the flights of a pool have in common.
+template <int n>
+struct SpaceSetting {
+    SpacePoolSetup setup;
+    SpaceWorld nominal_world;    ///< as a description and
+    FlownSpaceWorld<n> nominal;  ///< in numbers
+};
+
+/// The flight of one job in space in one lane; see LaneOf.
+template <int n>
+class SpaceLane {
+ public:
+    /// @param track where vehicles were: model.track_ticks rows
+    SpaceLane(const SpaceSetting<n>& setting, const SpaceKernelModel<n>& model, SpaceLanes<n>& lanes,
+              SpaceTrackRow<n>* track, int number)
+        : setting_(&setting), model_(&model), lanes_(&lanes), track_(track), number_(number) {}
+
+    [[nodiscard]] bool is_free() const noexcept { return job_ == nullptr; }
+    [[nodiscard]] SpaceFlightChain* chain() const noexcept { return chain_; }
+    void follow(SpaceFlightChain* chain) noexcept { chain_ = chain; }
+    [[nodiscard]] bool can_fly() const noexcept { return !is_free() || is_idle_; }
+
+    void begin(SpaceFlightJob& job) {
+        job_ = &job;
+        leg_ = 0;
+        description_ = job.world != nullptr ? job.world : &setting_->nominal_world;
+        world_ = job.world != nullptr ? make_space_world<n>(setting_->setup.robot, *job.world) : setting_->nominal;
+        first_tick_ = job.first_tick;
+        SpaceFlightState<double, n> start{};
+        copy_common(job.start, start);
+        write<SpaceVehicle<double, n>>(start, lanes_->vehicle);
+        for (int i = 0; i < 5; ++i) {
+            lanes_->gust[i][number_] = start.world.gust[i];
+        }
+        for (int age = 1; age <= model_->track_ticks; ++age) {
+            write(past_at(start.world, age), track_row(age));
+        }
+        write(world_.numbers, lanes_->world);
+        lanes_->tape[number_] = world_.tape;
+        lanes_->has_noise[number_] = world_.has_noise ? 1 : 0;
+        lanes_->is_active[number_] = 1;
+        lanes_->tick[number_] = 0;
+        is_idle_ = false;
+        free_motion_m_ = -1;
+        begin_leg();
+        if (const Rejection rejection = rejection_at_start(); rejection != Rejection::none) {
+            end_with(rejection);
+        }
+    }
+
+    void idle_like(const SpaceLane& other) {
+        copy_numbers(other);
+        lanes_->is_active[number_] = 0;
+        is_idle_ = true;
+    }
+
+    void move_from(SpaceLane& other) {
+        copy_numbers(other);
+        job_ = std::exchange(other.job_, nullptr);
+        chain_ = std::exchange(other.chain_, nullptr);
+        leg_ = other.leg_;
+        description_ = other.description_;
+        world_ = other.world_;
+        first_tick_ = other.first_tick_;
+        looked_at_ = other.looked_at_;
+        free_motion_m_ = other.free_motion_m_;
+        lanes_->is_active[other.number_] = 0;
+        is_idle_ = false;
+        other.is_idle_ = true;
+    }
+
+    /// See SpaceLookAround.
+    void look_around() {
+        lanes_->rejection[number_] = static_cast<double>(rejection_nearby());
+        lanes_->is_unclear[number_] = 0;
+    }
+
+    void look(bool is_interrupted) {
+        SpaceFlightLeg& leg = job_->legs[leg_];
+        leg.flight.ticks = static_cast<std::int64_t>(lanes_->tick[number_]);
+        const auto sums = read<BasicSpaceSums<double>>(lanes_->sums);
+        leg.flight.max_tracking_error_m = sums.max_tracking_error_m;
+        leg.flight.max_saturation = sums.max_saturation;
+        const bool is_end = leg.flight.ticks >= leg.segment.ticks();
+        Rejection rejection = static_cast<Rejection>(static_cast<int>(lanes_->rejection[number_]));
+        if (rejection == Rejection::none && lanes_->is_unclear[number_] > 0) {
+            rejection = rejection_nearby();
+        }
+        const auto& budget_j = setting_->setup.energy_budget_j;
+        if (rejection == Rejection::none && is_end && leg_ + 1 == job_->legs.size() && budget_j &&
+            plant().energy_j > *budget_j) {
+            rejection = Rejection::over_budget;
+        }
+        if (rejection != Rejection::none || is_end) {
+            end_with(rejection);
+        } else if (is_interrupted) {
+            end_with(Rejection::interrupted);
+        }
+    }
+
+ private:
+    static constexpr int coordinates = dynamics::space_coordinates<n>;
+
+    void copy_numbers(const SpaceLane& other) {
+        using Row = double[lane_count];
+        static_assert(sizeof(SpaceLanes<n>) % sizeof(Row) == 0);
+        for (Row& row : std::span(reinterpret_cast<Row*>(lanes_), sizeof(SpaceLanes<n>) / sizeof(Row))) {
+            row[number_] = row[other.number_];
+        }
+        for (SpaceTrackRow<n>& past : std::span(track_, static_cast<std::size_t>(model_->track_ticks))) {
+            for (Row& row : past.motion) {
+                row[number_] = row[other.number_];
+            }
+        }
+    }
+
+    /// The row of all lanes so many ticks ago, from 1 to the ticks of the track.
+    [[nodiscard]] LaneRows<PastSpaceMotion<double, n>>& track_row(int age) const noexcept {
+        return track_[model_->track_ticks - age].motion;
+    }
+
+    /// This lane's part of a struct.
+    template <class Struct>
+    [[nodiscard]] Struct read(const LaneRows<Struct>& rows) const noexcept {
+        Struct all;
+        for (int i = 0; i < number_count<double, Struct>; ++i) {
+            set_number_at(all, i, rows[i][number_]);
+        }
+        return all;
+    }
+    template <class Struct>
+    void write(const Struct& from, LaneRows<Struct>& rows) const noexcept {
+        for (int i = 0; i < number_count<double, Struct>; ++i) {
+            rows[i][number_] = number_at<double>(from, i);
+        }
+    }
+    [[nodiscard]] dynamics::SpaceState<double, n> plant() const {
+        return read<SpaceVehicle<double, n>>(lanes_->vehicle).plant;
+    }
+    [[nodiscard]] AnySpaceState state() const {
+        SpaceFlightState<double, n> now{};
+        static_cast<SpaceVehicle<double, n>&>(now) = read<SpaceVehicle<double, n>>(lanes_->vehicle);
+        for (int i = 0; i < 5; ++i) {
+            now.world.gust[i] = lanes_->gust[i][number_];
+        }
+        for (int age = 1; age <= recent_ticks; ++age) {
+            now.world.past[age - 1] = read<PastSpaceMotion<double, n>>(track_row(age));
+        }
+        const auto older = static_cast<int>(older_ticks(world_.numbers.delay_ticks));
+        for (int i = 1; i <= older; ++i) {
+            now.world.older.push_back(read<PastSpaceMotion<double, n>>(track_row(recent_ticks + i)));
+        }
+        AnySpaceState any{};
+        copy_common(now, any);
+        return any;
+    }
+
+    /// Where obstacles see the vehicle. @param rows its coordinates come first
+    [[nodiscard]] SpacePose pose_in(const double (*rows)[lane_count]) const {
+        SpaceMotion motion;
+        for (std::size_t i = 0; i < 3; ++i) {
+            motion.position_m[i] = rows[i][number_];
+        }
+        for (std::size_t i = 0; i < 4; ++i) {
+            motion.attitude[i] = rows[3 + i][number_];
+        }
+        for (std::size_t i = 0; i < n; ++i) {
+            motion.joints_rad[i] = rows[7 + i][number_];
+        }
+        return among_obstacles(motion, *description_);
+    }
+
+    void begin_leg() {
+        const SpaceSegment& segment = job_->legs[leg_].segment;
+        const BasicSpacePoint<double, n> from = point_for<n>(segment.from());
+        write(from, lanes_->reference);
+        write(point_for<n>(segment.to()), lanes_->end);
+        for (int axis = 0; axis < space_axes<n>; ++axis) {
+            for (int power = 0; power < 6; ++power) {
+                lanes_->coefficient[axis][power][number_] = segment.coefficients()[axis][power];
+            }
+        }
+        lanes_->inverse_duration_1_s[number_] = segment.inverse_duration_1_s();
+        lanes_->tick[number_] = 0;
+        lanes_->first_tick[number_] = static_cast<double>(first_tick_);
+        lanes_->ticks[number_] = static_cast<double>(segment.ticks());
+        write(BasicSpaceSums<double>{space_tracking_error_m(plant().q, from.position), 0}, lanes_->sums);
+    }
+
+    /// The rules where a job begins.
+    Rejection rejection_at_start() {
+        const double error_m = lanes_->sums[0][number_];
+        if (!are_within(plant(), max_state) || !(error_m <= unstable_error_m)) {
+            return Rejection::unstable;
+        }
+        for (int i = 0; i < coordinates; ++i) {
+            lanes_->before[i][number_] = lanes_->vehicle[i][number_];
+        }
+        return rejection_nearby();
+    }
+
+    /// Collision and flyable area at the state of now; how far the robot may move until the next look.
+    Rejection rejection_nearby() {
+        double free_m = std::numeric_limits<double>::infinity();
+        if (const SpaceChecker* const checker = setting_->setup.checker) {
+            const SpacePose pose = pose_in(lanes_->vehicle);
+            double moved_m = motion_m(model_->reach, change_between(looked_at_, pose));
+            if (!(moved_m < free_motion_m_) || !is_within_joint_limits()) {
+                const double margin_m = setting_->setup.margin_m;
+                free_motion_m_ = checker->free_motion_m(pose, margin_m, max_free_motion_m);
+                if (free_motion_m_ <= 0 || checker->comes_nearer_between(pose_in(lanes_->before), pose, margin_m)) {
+                    return Rejection::collision;
+                }
+                looked_at_ = pose;
+                free_motion_m_ -= free_motion_error_m(checker->kind());
+                moved_m = 0;
+            }
+            free_m = free_motion_m_ - moved_m;
+        }
+        if (const VolumeMap* const map = setting_->setup.volumes.rotor) {
+            const dynamics::SpaceState<double, n> now = plant();
+            const dynamics::LaneRotation<double> attitude = dynamics::rotation_of(now.q + 3);
+            const SpaceModel<n>& nominal = model_->tick.nominal.plant;
+            for (int i = 0; i < nominal.rotor_count; ++i) {
+                const auto at =
+                    nominal_place(world_.numbers, dynamics::LaneVector<double>{now.q[0], now.q[1], now.q[2]} +
+                                                      attitude * nominal.rotor[i].position_m);
+                const Vector3 hub_m{at.x, at.y, at.z};
+                const double margin_m = map->margin_m(hub_m);
+                if (margin_m <= 0 && !map->is_flyable(hub_m)) {
+                    return Rejection::flyable_area;
+                }
+                free_m = std::min(free_m, margin_m - free_motion_error_m(CollisionCheckerKind::own));
+            }
+        }
+        for (int i = 0; i < coordinates; ++i) {
+            lanes_->anchor[i][number_] = lanes_->vehicle[i][number_];
+        }
+        lanes_->free_motion_m[number_] = free_m;
+        return Rejection::none;
+    }
+
+    [[nodiscard]] bool is_within_joint_limits() const noexcept {
+        for (int i = 0; i < n; ++i) {
+            const double angle_rad = lanes_->vehicle[7 + i][number_];
+            if (angle_rad < model_->joint_low_rad[i] || angle_rad > model_->joint_high_rad[i]) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    void end_with(Rejection rejection) {
+        SpaceFlightLeg& leg = job_->legs[leg_];
+        leg.flight.rejection = rejection;
+        leg.end = state();
+        first_tick_ += leg.flight.ticks;
+        if (rejection == Rejection::none && ++leg_ < job_->legs.size()) {
+            begin_leg();
+            return;
+        }
+        job_ = nullptr;
+        lanes_->is_active[number_] = 0;
+    }
+
+    const SpaceSetting<n>* setting_;
+    const SpaceKernelModel<n>* model_;
+    SpaceLanes<n>* lanes_;
+    SpaceTrackRow<n>* track_;
+    int number_;
+    SpaceFlightJob* job_ = nullptr;
+    SpaceFlightChain* chain_ = nullptr;
+    std::size_t leg_ = 0;
+    const SpaceWorld* description_ = nullptr;
+    FlownSpaceWorld<n> world_{};
+    std::int64_t first_tick_ = 0;
+    SpacePose looked_at_;        ///< where collisions were looked for last, and
+    double free_motion_m_ = -1;  ///< how far from there none can be
+    bool is_idle_ = false;       ///< the numbers are those that another lane had
+};
+
+}  // namespace downwash::simulation
