@@ -11,8 +11,8 @@
 #include "downwash/base/lane_math.hpp"
 #include "downwash/simulation/flight_rules.hpp"
 #include "downwash/simulation/goal.hpp"
-#include "downwash/simulation/space_touch_flight.hpp"
 #include "downwash/simulation/space_rules.hpp"
+#include "downwash/simulation/space_touch_flight.hpp"
 
 namespace downwash {
 namespace {
