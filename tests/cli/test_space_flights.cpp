@@ -172,7 +172,6 @@ TEST_CASE("Commands that cannot take a problem in space say what can be done wit
     rejected(words("replan", girder, "--plan run --after 3"), "makes this a problem in space");
     rejected(words("aeromap build", girder, "-o map.csv"), in_space);
     rejected(words("aeromap query", girder, "--at 0 0 1"), in_space);
-    rejected(words("aeromap hold", girder, "--at 0 1"), in_space);
     rejected(words("export run --format csv -o run.csv"), "this is a run in space");
     write_file(work.in_run("campaign.yaml"), "schema: downwash/campaign/v1\nproblems: [" + girder + "]\n");
     rejected(words("bench run campaign.yaml --out campaign"), "makes this a problem in space");
