@@ -233,16 +233,21 @@ complete -C 'downwash aeromap q'
 complete -C 'downwash solve --see'
 complete -C 'downwash solve --variant mp-arm-d'
 complete -C 'downwash completion fi'
+complete -C 'downwash solve ' | head -1
+complete -C 'downwash replan b.yaml --plan ' | head -1
 )");
-    REQUIRE(std::system(("HOME='" + work.path().string() + "' fish -N '" + (work / "script").string() + "' >'" +
-                         (work / "offered").string() + "'")
+    for (const char* file : {"a.txt", "b.yaml", "c.json"}) {
+        write_file(work.in_run(file), "");
+    }
+    REQUIRE(std::system(("cd '" + work.in_run().string() + "' && HOME='" + work.path().string() + "' fish -N '" +
+                         (work / "script").string() + "' >'" + (work / "offered").string() + "'")
                             .c_str()) == 0);
     std::istringstream lines(read_file(work / "offered"));
     std::string words;
     for (std::string line; std::getline(lines, line);) {
         words += line.substr(0, line.find('\t')) + "|";
     }
-    CHECK(words == "solve|query|--seed|mp-arm-da|fish|");
+    CHECK(words == "solve|query|--seed|mp-arm-da|fish|b.yaml|c.json|");
 }
 
 TEST_CASE("What cannot be reported or exported is rejected with a remedy") {
