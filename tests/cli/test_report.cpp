@@ -186,6 +186,7 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
         {"downwash solve only.yaml --no", "--no-cache"},
         {"downwash planners ''", "--help|--json"},
         {"downwash explain planner.sa", "planner.safety_margin_m"},
+        {"downwash explain safety", "safety_margin_m"},
     };
     std::string questions = "ask() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); ";
     questions +=
@@ -196,7 +197,7 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
         questions += std::string("ask ") + asked.words + "\n";
         expected += std::string(asked.offered) + "\n";
     }
-    questions += "mkdir -p others && cd others && touch only.yaml table.csv solution.json notes.txt\n";
+    questions += "mkdir -p ../others && cd ../others && touch only.yaml table.csv solution.json notes.txt\n";
     for (const Asked& asked : with_others) {
         questions += std::string("ask ") + asked.words + "\n";
         expected += std::string(asked.offered) + "\n";
