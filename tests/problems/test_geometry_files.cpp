@@ -246,9 +246,9 @@ TEST_CASE("a corner within an open edge is named, and a shell that faces both wa
     };
     for (const auto& [turned, warned] : {std::pair<std::size_t, const char*>{0, ""},
                                          {3, ""},
-                                         {4, "33.3 %"},
-                                         {5, "41.7 %"},
-                                         {7, "41.7 %"},
+                                         {4, "33.33 %"},
+                                         {5, "41.67 %"},
+                                         {7, "41.67 %"},
                                          {9, ""},
                                          {12, ""}}) {
         CAPTURE(turned);
