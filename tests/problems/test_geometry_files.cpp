@@ -253,7 +253,7 @@ TEST_CASE("a corner within an open edge is named, and a shell that faces both wa
                                          {12, ""}}) {
         CAPTURE(turned);
         folder.write("pole.stl", binary_stl(shells(turned)));
-        found = shape_warnings(folder, "mesh: {file: pole.stl}");
+        found = shape_warnings(folder, "mesh: {file: pole.stl, center_m: [0, 6, 0]}");
         REQUIRE(found.size() == (*warned == '\0' ? 0 : 1));
         if (!found.empty()) {
             CHECK_THAT(found[0], Contains(std::string("has a piece in which ") + warned + " of the triangles") &&
