@@ -96,19 +96,16 @@ class BrickBuilder {
         }
     }
 
-    static std::optional<VolumeSample> first_sample(const VolumeGrid& grid, std::size_t number,
-                                                    const VolumeBrick& brick) {
-        Point first = grid.brick_at(number);
-        for (std::uint32_t& cells : first) {
-            cells *= VolumeBrick::side_cells;
-        }
-        for (std::uint32_t which = 0; which < VolumeBrick::cell_count; ++which) {
-            Box box = cell(which);
-            if (const VolumeNode* node = first_polynomial(brick.cells[which], box)) {
-                return VolumeSample{hub_m(grid, first, box.low), double{node->polynomials[0][0]}};
+    /// Whether the first box of another brick that has a polynomial has it from the effect of today.
+    bool agrees(const VolumeBrick& other) {
+        for (std::uint32_t number = 0; number < VolumeBrick::cell_count; ++number) {
+            Box box = cell(number);
+            if (const VolumeNode* node = first_polynomial(other.cells[number], box)) {
+                enter_cell(number);
+                return node->polynomials[0][0] == static_cast<float>(value(box.low).all);
             }
         }
-        return {};
+        return true;
     }
 
  private:
@@ -349,15 +346,14 @@ class BrickBuilder {
         fold_one(1, brick_.same_along.lateral, same_along_->lateral);
     }
 
-    [[nodiscard]] static Vector3 hub_m(const VolumeGrid& grid, const Point& first, const Point& point) {
+    [[nodiscard]] Vector3 hub_m(const Point& point) const {
         Vector3 at{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double cells = static_cast<double>(first[axis]) + static_cast<double>(point[axis]) / cell_edge;
-            at[axis] = grid.low_m[axis] + cells * grid.cell_m[axis];
+            const double cells = static_cast<double>(first_[axis]) + static_cast<double>(point[axis]) / cell_edge;
+            at[axis] = grid_.low_m[axis] + cells * grid_.cell_m[axis];
         }
-        return grid.frame.to_world(at[0], at[1], at[2]);
+        return grid_.frame.to_world(at[0], at[1], at[2]);
     }
-    [[nodiscard]] Vector3 hub_m(const Point& point) const { return hub_m(grid_, first_, point); }
 
     [[nodiscard]] Vector3 edges_m(const Box& box) const {
         const auto edge_m = [&](std::size_t axis) {
@@ -411,8 +407,11 @@ void explore_all(const DirectEffect& effect, const VolumeGrid& grid, std::size_t
     BrickBuilder(effect, grid, number, brick).explore_all();
 }
 
-std::optional<VolumeSample> first_sample(const VolumeGrid& grid, std::size_t number, const VolumeBrick& brick) {
-    return BrickBuilder::first_sample(grid, number, brick);
+bool agrees_with_effect(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number,
+                        const VolumeBrick& brick) {
+    OwnedBrick blank;
+    BrickBuilder builder(effect, grid, number, blank);
+    return builder.look_at_whole() && builder.agrees(brick);
 }
 
 }  // namespace downwash

@@ -10,7 +10,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "downwash/aeromap/direct_effect.hpp"
@@ -79,14 +78,9 @@ void explore(const DirectEffect& effect, const VolumeGrid& grid, const PlaceInBr
 /// The same of all boxes of a brick.
 void explore_all(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number, OwnedBrick& brick);
 
-/// A place, and what a polynomial has there.
-struct VolumeSample {
-    Vector3 hub_m;
-    double all;
-};
-/// The low corner of the first box with a polynomial; empty without such a box.
-[[nodiscard]] std::optional<VolumeSample> first_sample(const VolumeGrid& grid, std::size_t number,
-                                                       const VolumeBrick& brick);
+/// Whether a sample that a brick was made from is what the effect gives today.
+[[nodiscard]] bool agrees_with_effect(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number,
+                                      const VolumeBrick& brick);
 
 /// What copies of a volume share: its bricks, and how to look into them. Safe to share between threads.
 class VolumeBricks {

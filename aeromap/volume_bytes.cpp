@@ -4,7 +4,6 @@
 #include <cstring>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -136,14 +135,10 @@ struct NumberedBrick {
 /// Evaluates again in some bricks. This notices changes of models or integration without a new format.
 bool agree_with_effect(const VolumeBricks& bricks, const std::vector<NumberedBrick>& read) {
     constexpr std::size_t samples = 64;
-    constexpr double rounding = 1e-6;
     const std::size_t stride = std::max<std::size_t>(1, read.size() / samples);
     for (std::size_t n = 0; n < read.size(); n += stride) {
-        if (read[n].brick == nullptr) {
-            continue;
-        }
-        const std::optional<VolumeSample> sample = first_sample(bricks.grid(), read[n].number, *read[n].brick);
-        if (sample && !(std::abs(direct_value(*bricks.effect(), sample->hub_m).all - sample->all) <= rounding)) {
+        if (read[n].brick != nullptr &&
+            !agrees_with_effect(*bricks.effect(), bricks.grid(), read[n].number, *read[n].brick)) {
             return false;
         }
     }
