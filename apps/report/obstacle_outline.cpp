@@ -321,6 +321,7 @@ std::vector<ObstacleOutline> seen_outlines(const Scene& scene, const Matrix3& vi
                 outline.rings = std::move(parts);
             }
         }
+        outline.is_cut = true;  // all of it is seen
     }
     return outlines;
 }

@@ -41,7 +41,8 @@ inline constexpr Matrix3 seen_from_above{{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}}};   
 inline constexpr Matrix3 seen_from_the_side{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};    ///< x across, z up
 inline constexpr Matrix3 seen_from_the_front{{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}};  ///< y across, z up
 
-/// Every obstacle as it is seen from far away: a convex ring, or one for each part of a mesh that consists of parts.
+/// Every obstacle as it is seen from far away, as if all of it were cut: a convex ring, or one for each part of a mesh
+/// that consists of parts.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<ObstacleOutline> seen_outlines(const Scene& scene, const Matrix3& view);
 
 /// A solid of a robot as it is seen from far away: a convex ring.

@@ -197,6 +197,9 @@ class ViewDrawing {
         ground.px_per_m = px_per_m_;
         ground.height_m = label_px / px_per_m_;
         for (const FigureLines& lines : view_.lines) {
+            if (lines.dash == LineDash::dotted) {
+                continue;  // fine enough to be read through
+            }
             ground.taken.insert(ground.taken.end(), lines.pieces.begin(), lines.pieces.end());
         }
         ground.background = [](const PlanePoint&) { return 0; };

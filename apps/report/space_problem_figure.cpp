@@ -29,15 +29,17 @@ PlanePoint seen(const Matrix3& view, const Vector3& p_m) {
 /// that every view has room.
 BoundingBox shown_box(const SpaceProblem& problem) {
     constexpr double least_share = 0.22;
-    const double room_m = 1.1 * space_robot_facts(problem.robot).reach_m + problem.robot.rotor_radius_m;
     BoundingBox box{problem.bounds.low_m, problem.bounds.high_m};
     double longest_m = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-        box.low_m[k] -= room_m;
-        box.high_m[k] += room_m;
         longest_m = std::max(longest_m, box.high_m[k] - box.low_m[k]);
     }
+    const double reach_m = space_robot_facts(problem.robot).reach_m + problem.robot.rotor_radius_m;
+    const double room_m = std::max(1.1 * reach_m, 0.06 * longest_m);
+    longest_m += 2 * room_m;
     for (std::size_t k = 0; k < 3; ++k) {
+        box.low_m[k] -= room_m;
+        box.high_m[k] += room_m;
         const double missing_m = std::max(0., least_share * longest_m - (box.high_m[k] - box.low_m[k]));
         box.low_m[k] -= missing_m / 2;
         box.high_m[k] += missing_m / 2;
@@ -57,17 +59,13 @@ struct PlaceOf {
     }
 };
 
-std::optional<double> radius_of(const SpaceGoalKind& kind) {
-    return std::visit(
-        [](const auto& goal) -> std::optional<double> {
-            if constexpr (std::is_same_v<std::decay_t<decltype(goal)>, SpaceCameraGoal>) {
-                return goal.farthest_m;
-            } else {
-                return goal.tolerance_m;
-            }
-        },
-        kind);
-}
+struct ToleranceOf {
+    double operator()(const SpaceCameraGoal& /*goal*/) const { return 0; }
+    template <class Goal>
+    double operator()(const Goal& goal) const {
+        return goal.tolerance_m;
+    }
+};
 
 /// The direction in which the tool must point there, if it must.
 std::optional<Vector3> direction_of(const SpaceGoalKind& kind) {
@@ -94,7 +92,8 @@ Ring circle_around(const PlanePoint& middle, double radius_m) {
 /// The points of goals with the lines around them: how far they reach, and the direction of the tool.
 struct SeenGoals {
     FigurePoints points{"goal", {}, goal_color, {}};
-    FigureLines tolerances{"tolerance of the goal, or a camera's greatest distance", {}, goal_color, 1};
+    FigureLines tolerances{"tolerance of the goal", {}, goal_color, 1};
+    FigureLines ranges{"range of the camera", {}, goal_color, 1, LineDash::dotted};
     FigureLines directions{"direction of the tool at the goal", {}, goal_color, 2, LineDash::solid, true};
 };
 
@@ -111,7 +110,12 @@ SeenGoals seen_goals(const SpaceProblem& problem, const Matrix3& view, double ar
             const PlanePoint at = seen(view, *place_m);
             found.points.points.push_back(at);
             found.points.labels.push_back(name);
-            found.tolerances.pieces.push_back(circle_around(at, *radius_of(kind)));
+            if (const auto* camera = std::get_if<SpaceCameraGoal>(&kind)) {
+                found.ranges.pieces.push_back(circle_around(at, camera->nearest_m));
+                found.ranges.pieces.push_back(circle_around(at, camera->farthest_m));
+            } else {
+                found.tolerances.pieces.push_back(circle_around(at, std::visit(ToleranceOf(), kind)));
+            }
             if (const std::optional<Vector3> direction = direction_of(kind)) {
                 const Vector3 from_m = *place_m - arrow_m / std::sqrt(dot(*direction, *direction)) * *direction;
                 const PlanePoint from = seen(view, from_m);
@@ -130,8 +134,9 @@ SeenGoals seen_goals(const SpaceProblem& problem, const Matrix3& view, double ar
     return found;
 }
 
-Ring rectangle(const PlanePoint& low, const PlanePoint& high) {
-    return {low, {high.x_m, low.z_m}, high, {low.x_m, high.z_m}, low};
+/// The sides of a rectangle, in two pieces: names may stand within it.
+std::vector<Ring> rectangle(const PlanePoint& low, const PlanePoint& high) {
+    return {{low, {high.x_m, low.z_m}, high}, {high, {low.x_m, high.z_m}, low}};
 }
 
 SpaceView seen_from(const SpaceProblem& problem, const Scene& scene, const BoundingBox& shown, const Matrix3& view,
@@ -142,14 +147,13 @@ SpaceView seen_from(const SpaceProblem& problem, const Scene& scene, const Bound
     const SpacePose start = pose_at(problem.start);
     const double arrow_m = 0.07 * std::max(high.x_m - low.x_m, high.z_m - low.z_m);
     SeenGoals goals = seen_goals(problem, view, arrow_m);
-    drawn.lines = {{"bounds of the centre of mass",
-                    {rectangle(seen(view, problem.bounds.low_m), seen(view, problem.bounds.high_m))},
-                    planned_color,
-                    1.3,
-                    LineDash::dashed},
-                   std::move(goals.tolerances),
-                   std::move(goals.directions),
-                   {"robot at the start", robot_lines(problem.robot, start, view), flown_color, 1.6}};
+    drawn.lines = {
+        {"bounds of the centre of mass", rectangle(seen(view, problem.bounds.low_m), seen(view, problem.bounds.high_m)),
+         planned_color, 1.3, LineDash::dashed},
+        std::move(goals.tolerances),
+        std::move(goals.ranges),
+        std::move(goals.directions),
+        {"robot at the start", robot_lines(problem.robot, start, view), flown_color, 1.6}};
     std::erase_if(drawn.lines, [](const FigureLines& lines) { return lines.pieces.empty(); });
     drawn.points = {{"end effector at the start",
                      {seen(view, end_effector_at(problem.robot, start))},

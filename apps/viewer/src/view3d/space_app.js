@@ -84,7 +84,7 @@ function draw_obstacles(obstacles, paint) {
     if (are_many(obstacles)) {
         group.add(draw_together(solids, "section", paint, 0.4));
     } else {
-        group.add(...solids.map((solid) => draw_solid(solid, "section", paint, 0.38)));
+        solids.forEach((solid) => group.add(draw_solid(solid, "section", paint, 0.38)));
     }
     return group;
 }
