@@ -199,7 +199,14 @@ class Space(page_test.BrowserTest):
         self.browser.media(prefers_color_scheme="dark")
         self.show("space")
         self.assertGreater(len(self.browser.pdf()), 100_000)
-        self.assertEqual(self.one(".stage", "e.style.width"), "")  # as before
+        size = "[e.style.width, e.style.height, e.querySelector('canvas').width]"
+        before = self.one(".stage", size)
+        self.js("dispatchEvent(new Event('beforeprint'))")
+        self.browser.settle()
+        self.assertEqual(self.one(".stage", "e.style.width"), "690px")
+        self.js("dispatchEvent(new Event('afterprint'))")
+        self.browser.settle()
+        self.assertEqual(self.one(".stage", size), before)
 
 
 class SpaceWithoutWebGL(page_test.BrowserTest):

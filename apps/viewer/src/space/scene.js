@@ -92,9 +92,15 @@ export function make_scene(model, clock, playback, theme) {
         app.set_theme(document.documentElement.dataset.theme);
         theme.follow(app.set_theme);
         stage.view = app;  // for tests
+        // Before keep_sized() listens, which asks for the width on paper.
+        let on_paper = false;
+        addEventListener("beforeprint", () => {
+            on_paper = true;
+        });
+        addEventListener("afterprint", () => {
+            on_paper = false;
+        });
         keep_sized(stage, 690, (width) => {
-            // Only prints ask for a width that is not that of the stage.
-            const on_paper = matchMedia("print").matches || width !== Math.round(stage.clientWidth);
             const height = on_paper ? height_on_paper : height_for(width);
             stage.style.height = `${height}px`;
             stage.style.width = on_paper ? `${width}px` : "";
