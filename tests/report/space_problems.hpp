@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,11 @@ inline SpaceProblem bay_problem() {
     SpaceProblem problem;
     problem.name = "bay";
     problem.robot = space_robot(2);
-    problem.robot.body = {{Box{{0.4, 0.3, 0.1}}, {0, 0, 0}}};
+    problem.robot.body = {SpaceBodyShape{Box{{0.4, 0.3, 0.1}}, {}}};
     problem.robot.links[0].is_limited = true;
     problem.robot.links[0].lower_limit_rad = -1;
     problem.robot.links[0].upper_limit_rad = 1.5;
-    problem.robot.links[1].body = {{Capsule{0.02, {0, 0, 0}, {0.03, 0, -0.12}}, {0, 0, 0}}};
+    problem.robot.links[1].body = {SpaceBodyShape{Capsule{0.02, {0, 0, 0}, {0.03, 0, -0.12}}, {}}};
     problem.bounds = {{-5, -4, 0.5}, {5, 4, 5}};
     problem.obstacles = {{"pier", Cylinder{0.5, 6, {0, 0, 1}}, {3, 1.5, 3}, {}},
                          {"girder", Box{{8, 0.4, 1.2}}, {0, 1.5, 4.2}, {}}};
@@ -30,7 +31,7 @@ inline SpaceProblem bay_problem() {
     SpaceEndEffectorGoal goal;
     goal.position_m = {1, 0.9, 3};
     goal.direction = Vector3{0, 0, -2};
-    problem.goals = {{goal}};
+    problem.goals = {SpaceGoal{goal}};
     return problem;
 }
 

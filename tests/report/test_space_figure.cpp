@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -103,9 +105,9 @@ TEST_CASE("the robot stands at its start, turned as it is there, with its arm") 
     CHECK(raised.x_m == Approx(-3 + 0.02 - 0.14 - 0.12));
     CHECK(raised.z_m == Approx(1.5 - 0.06 - 0.02 - 0.03));
 
-    // Rolled over its left side by a quarter turn: what was up is to the right, -y.
+    // Rolled by a quarter turn to the left: what hangs below is to the right, -y.
     problem.start.joints_rad.clear();
-    problem.start.attitude = {{std::sqrt(0.5), -std::sqrt(0.5), 0, 0}};
+    problem.start.attitude = std::array<double, 4>{std::sqrt(0.5), -std::sqrt(0.5), 0, 0};
     figure = figure_of(problem);
     const PlanePoint rolled = figure.front.points.at(0).points.at(0);
     CHECK(rolled.x_m == Approx(-2 - 0.32));
@@ -127,7 +129,7 @@ TEST_CASE("goals in space have their point, tolerance and direction in every vie
     camera.target_m = {0, 1.5, 3.6};
     camera.nearest_m = 0.5;
     camera.farthest_m = 1.5;
-    problem.goals.push_back({camera});
+    problem.goals.push_back(SpaceGoal{camera});
     figure = figure_of(problem);
     CHECK(figure.top.points.at(1).labels == std::vector<std::string>{"goal 1", "goal 2"});
     check_box(box_of(lines_of(figure.side, "range of the camera").pieces), -1.5, 1.5, 2.1, 5.1);

@@ -1,13 +1,14 @@
 #include "downwash/report/space_page.hpp"
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "downwash/report/run_page.hpp"
@@ -77,7 +78,7 @@ TEST_CASE("the page of a problem in space has its scene, robot, start and goal i
 
 TEST_CASE("a start's attitude of any length stands on the page with length 1") {
     SpaceProblem problem = test::bay_problem();
-    problem.start.attitude = {{2, 0, 2, 0}};
+    problem.start.attitude = std::array<double, 4>{2, 0, 2, 0};
     const json attitude = data_of(problem).at("start").at("attitude");
     CHECK(attitude.at(0).get<double>() == Approx(std::sqrt(0.5)));
     CHECK(attitude.at(2).get<double>() == Approx(std::sqrt(0.5)));
@@ -98,9 +99,9 @@ TEST_CASE("every kind of goal in space stands on the page, alternatives by their
     SpaceContactGoal contact;
     contact.obstacle = "pier";
     SpaceGoal choice;
-    choice.any_of = {{pose}, {camera}};
+    choice.any_of = {SpaceGoal{pose}, SpaceGoal{camera}};
     choice.hold_s = 2;
-    problem.goals = {{configuration}, choice, {contact}};
+    problem.goals = {SpaceGoal{configuration}, choice, SpaceGoal{contact}};
     problem.in_any_order = true;
     const json page = data_of(problem), goals = page.at("goals");
     std::vector<std::string> names, kinds;
