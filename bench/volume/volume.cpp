@@ -1,10 +1,12 @@
-// What the first look-ups of a volume cost that fills where it is asked, what a flight of 20 s in a fresh girder bay pays
-// for its cells, and how far look-ups at random flyable places are from direct evaluation. Prints Markdown.
+// What the first look-ups of a volume cost, which fills where it is asked; what a flight of 20 s in a fresh girder bay
+// pays for its cells; and how far look-ups at random flyable places are from direct evaluation. Prints Markdown.
 
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "../../tests/support/volume_scenes.hpp"
@@ -112,9 +114,9 @@ void run(const Options& options) {
     for (const Row& row : rows) {
         for (const auto& [name, share] : {std::pair("median", 0.5), std::pair("95 %", 0.95), std::pair("all", 1.0)}) {
             const double time_s = quantile(row.times_s, share);
-            print_bound(fmt::format("the first look-up within {:.1f} ms in the {}, {}", 1e3 * row.bound_s,
-                                    row.site.name, name),
-                        fmt::format("{:.3f} ms", 1e3 * time_s), time_s <= row.bound_s);
+            print_bound(
+                fmt::format("the first look-up within {:.1f} ms in the {}, {}", 1e3 * row.bound_s, row.site.name, name),
+                fmt::format("{:.3f} ms", 1e3 * time_s), time_s <= row.bound_s);
         }
     }
     print_bound("a flight of 20 s in fresh bays pays less than 0.2 s", fmt::format("{:.3f} s", flight.whole_s),
