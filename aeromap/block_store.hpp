@@ -17,8 +17,8 @@ namespace downwash {
 /// A numbered set of blocks, each made when somebody first asks for it, and then kept. Safe to share between threads.
 ///
 /// A block has to be a pure function of its number: then nothing depends on who asks first, nor on which thread makes
-/// it. What a block holds, and what its number stands for, is the user's affair: 8 x 8 cells of a plane, or a brick of
-/// a volume.
+/// it. What a block holds, and what its number stands for, is the user's affair: of a map, 8 x 8
+/// cells of a plane.
 ///
 /// A thread that asks for a block while another one makes it waits for it. To make it twice would be as right, but the
 /// flights of a batch begin at the same place, so that threads would make the same blocks one after the other and be

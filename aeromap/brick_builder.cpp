@@ -1,16 +1,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <map>
 #include <memory_resource>
+#include <optional>
+#include <utility>
 
 #include "downwash/aeromap/change_bound.hpp"
 #include "downwash/aeromap/known_factors.hpp"
 #include "downwash/aeromap/layer_builder.hpp"
+#include "downwash/aeromap/same_along.hpp"
 #include "downwash/aeromap/volume_bricks.hpp"
-#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/scene/collision_checker.hpp"
 
 namespace downwash {
@@ -28,21 +28,21 @@ constexpr std::uint32_t cell_edge = shortest_edge << max_halvings;
 /// Beside the ends of walls the vector towards them jumps, which no halving mends.
 constexpr std::uint32_t shortest_edge_of_walls = cell_edge / 4;
 constexpr std::uint32_t bits_per_axis = 21;
-/// Beyond that many boxes the rest of a brick is left to direct evaluation. A few hundred are usual, ten thousand
-/// among the parts of a mesh.
-constexpr std::size_t max_brick_boxes = 65536;
+/// A box is no smaller than its cell halved that many times, across whichever axes: among the parts of a mesh more
+/// halvings are worth less than direct evaluation.
+constexpr int max_depth = 16;
 constexpr std::size_t no_axis = 3;
 
-/// Halves the cells of one brick. What it looks at lies on one lattice, so that boxes share their samples.
+/// Looks into the cells of one brick. What it looks at lies on one lattice, so that boxes share their samples.
 class BrickBuilder {
  public:
-    BrickBuilder(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number)
+    BrickBuilder(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number, OwnedBrick& brick)
         : effect_(effect),
           grid_(grid),
           is_of_walls_(effect.is_of_walls_around()),
           // Distances to walls turn where the nearest wall changes, which no cell misses.
           longest_m_(is_of_walls_ ? std::numeric_limits<double>::infinity() : 2 * shortest_turn_m(effect)),
-          brick_(std::make_shared<OwnedBrick>()) {
+          brick_(brick) {
         const auto at = grid.brick_at(number);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             first_[axis] = at[axis] * VolumeBrick::side_cells;
@@ -50,26 +50,62 @@ class BrickBuilder {
         }
     }
 
-    std::shared_ptr<const OwnedBrick> brick() {
+    /// What is the same for the whole brick. @return false where a brick is not needed
+    bool look_at_whole() {
         Box whole{{}, {}};
         for (std::size_t axis = 0; axis < 3; ++axis) {
             whole.edges[axis] = (last_[axis] - first_[axis]) * cell_edge;
         }
-        is_calm_ = is_quiet(whole);
-        if (is_calm_ && margin_m(whole) >= effect_.rotor_radius_m() + half_diagonal_m(whole)) {
-            return nullptr;
+        brick_.is_calm = is_quiet(whole);
+        if (brick_.is_calm) {
+            return margin_m(whole) < effect_.rotor_radius_m() + half_diagonal_m(whole);
         }
+        brick_.same_along = same_along(effect_, grid_.frame, hubs_in(whole));
+        return true;
+    }
+
+    /// Makes the box around a place known.
+    void explore(const PlaceInBrick& place) {
+        enter_cell(place.cell);
+        Box box = cell(place.cell);
+        VolumeNode* node = &brick_.cells[place.cell];
+        auto part = std::to_array(place.part);
+        for (int depth = 0;; ++depth) {
+            if (node->kind == Kind::unknown) {
+                brick_.publish(*node, node_of(box, depth));
+            }
+            if (!is_halving(node->kind)) {
+                return;
+            }
+            const auto axis = static_cast<std::size_t>(node->kind);
+            const bool is_upper = 2 * part[axis] >= 1;
+            part[axis] = 2 * part[axis] - (is_upper ? 1 : 0);
+            box = half_of(box, axis, is_upper);
+            node = node->halves + (is_upper ? 1 : 0);
+        }
+    }
+
+    void explore_all() {
         constexpr std::uint32_t side = VolumeBrick::side_cells;
-        for (std::uint32_t k = 0; k < last_[2] - first_[2]; ++k) {
-            for (std::uint32_t j = 0; j < last_[1] - first_[1]; ++j) {
-                for (std::uint32_t i = 0; i < last_[0] - first_[0]; ++i) {
-                    const Box cell{{i * cell_edge, j * cell_edge, k * cell_edge}, {cell_edge, cell_edge, cell_edge}};
-                    brick_->cells[(k * side + j) * side + i] = node_of(cell);
-                }
+        for (std::uint32_t number = 0; number < VolumeBrick::cell_count; ++number) {
+            const std::array<std::uint32_t, 3> at{number % side, number / side % side, number / side / side};
+            if (first_[0] + at[0] < last_[0] && first_[1] + at[1] < last_[1] && first_[2] + at[2] < last_[2]) {
+                enter_cell(number);
+                explore_all(brick_.cells[number], cell(number), 0);
             }
         }
-        brick_->seal();
-        return brick_;
+    }
+
+    /// Whether the first box of another brick that has a polynomial has it from the effect of today.
+    bool agrees(const VolumeBrick& other) {
+        for (std::uint32_t number = 0; number < VolumeBrick::cell_count; ++number) {
+            Box box = cell(number);
+            if (const VolumeNode* node = first_polynomial(other.cells[number], box)) {
+                enter_cell(number);
+                return node->polynomials[0][0] == static_cast<float>(value(box.low).all);
+            }
+        }
+        return true;
     }
 
  private:
@@ -86,55 +122,76 @@ class BrickBuilder {
         Triquadratic all, above;
     };
 
-    /// What a box, or what it is halved into, is.
-    VolumeNode node_of(const Box& box) {
+    static Box cell(std::uint32_t number) {
+        constexpr std::uint32_t side = VolumeBrick::side_cells;
+        return {{number % side * cell_edge, number / side % side * cell_edge, number / side / side * cell_edge},
+                {cell_edge, cell_edge, cell_edge}};
+    }
+    static Box half_of(Box box, std::size_t axis, bool is_upper) {
+        box.edges[axis] /= 2;
+        box.low[axis] += is_upper ? box.edges[axis] : 0;
+        return box;
+    }
+
+    /// @param[in,out] box of the node; then of the one that is found
+    static const VolumeNode* first_polynomial(const VolumeNode& node, Box& box) {
+        const VolumeNodeKind kind = kind_of(node);
+        if (!is_halving(kind)) {
+            return kind == Kind::below || kind == Kind::above || kind == Kind::both ? &node : nullptr;
+        }
+        for (const bool is_upper : {false, true}) {
+            Box half = half_of(box, static_cast<std::size_t>(kind), is_upper);
+            if (const VolumeNode* found = first_polynomial(node.halves[is_upper ? 1 : 0], half)) {
+                box = half;
+                return found;
+            }
+        }
+        return nullptr;
+    }
+
+    void explore_all(VolumeNode& node, const Box& box, int depth) {
+        if (node.kind == Kind::unknown) {
+            brick_.publish(node, node_of(box, depth));
+        }
+        if (is_halving(node.kind)) {
+            for (const bool is_upper : {false, true}) {
+                explore_all(node.halves[is_upper ? 1 : 0], half_of(box, static_cast<std::size_t>(node.kind), is_upper),
+                            depth + 1);
+            }
+        }
+    }
+
+    void enter_cell(std::uint32_t number) {
+        cell_low_ = cell(number).low;
+        same_along_.reset();
+    }
+
+    /// Finds out what a box is.
+    VolumeNode node_of(const Box& box, int depth) {
         const double margin = margin_m(box);
         const double reach_m = half_diagonal_m(box) + clearance_slack_m;
         const auto kept_m = static_cast<float>(kept_margin_m(margin));
         SidedChange change{};
-        if (is_calm_ || margin + reach_m < 0 || is_quiet(box, change)) {
-            return VolumeNode::of(Kind::calm, 0, kept_m);
+        if (brick_.is_calm || margin + reach_m < 0 || is_quiet(box, change)) {
+            return {Kind::calm, kept_m, nullptr, nullptr};
         }
         std::size_t axis = too_long(box);
         if (axis == no_axis) {
             const Fit fit = fit_of(box, is_of_walls_ ? CellSides::both : sides_of(change));
             axis = missed_axis(box, fit);
             if (axis == no_axis) {
-                return VolumeNode::of(kind_of(fit.sides), index_of(fit), kept_m);
+                return {kind_of_sides(fit.sides), kept_m, nullptr,
+                        fit.sides == CellSides::both ? brick_.keep(fit.all, fit.above) : brick_.keep(fit.all)};
             }
         }
-        if (box.edges[axis] <= (is_of_walls_ ? shortest_edge_of_walls : shortest_edge) || boxes_ >= max_brick_boxes) {
-            return VolumeNode::of(Kind::direct, 0, kept_m);
+        if (box.edges[axis] <= (is_of_walls_ ? shortest_edge_of_walls : shortest_edge) || depth == max_depth) {
+            return {Kind::direct, kept_m, nullptr, nullptr};
         }
-        ++boxes_;
-        const std::size_t lower = brick_->all_nodes.size();
-        brick_->all_nodes.resize(lower + 2);
-        Box half = box;
-        half.edges[axis] /= 2;
-        for (std::size_t which = 0; which < 2; ++which) {
-            const VolumeNode of_half = node_of(half);
-            brick_->all_nodes[lower + which] = of_half;
-            half.low[axis] += half.edges[axis];
-        }
-        return VolumeNode::of(static_cast<Kind>(axis), static_cast<std::uint32_t>(lower), 0);
+        return {static_cast<Kind>(axis), 0, brick_.new_halves(), nullptr};
     }
 
-    static Kind kind_of(CellSides sides) {
+    static Kind kind_of_sides(CellSides sides) {
         return sides == CellSides::both ? Kind::both : sides == CellSides::above ? Kind::above : Kind::below;
-    }
-
-    /// Of the polynomials, which boxes with the same values share.
-    std::uint32_t index_of(const Fit& fit) {
-        auto& all = brick_->all_polynomials;
-        const auto [place, is_new] =
-            known_fits_.try_emplace({fit.all, fit.above}, static_cast<std::uint32_t>(all.size()));
-        if (is_new) {
-            all.push_back(fit.all);
-            if (fit.sides == CellSides::both) {
-                all.push_back(fit.above);
-            }
-        }
-        return place->second;
     }
 
     /// How far the middle of a box is inside the flyable area.
@@ -270,10 +327,23 @@ class BrickBuilder {
                 sides == CellSides::both ? triquadratic_through(above) : Triquadratic{}};
     }
 
-    SidedFactor<double> value(const Point& point) {
+    SidedFactor<double> value(Point point) {
+        fold(point);
         const std::uint64_t key =
             (std::uint64_t{point[2]} << 2 * bits_per_axis) + (std::uint64_t{point[1]} << bits_per_axis) + point[0];
-        return known_.find_or_add(key, [&] { return direct_value(effect_, hub_m(point)); });
+        return brick_.samples.find_or_add(key, [&] { return direct_value(effect_, hub_m(point)); });
+    }
+
+    /// Along an axis along which K stays the same one point stands for all.
+    void fold(Point& point) {
+        if (!same_along_) {
+            same_along_ = same_along(effect_, grid_.frame, hubs_in({cell_low_, {cell_edge, cell_edge, cell_edge}}));
+        }
+        const auto fold_one = [&](std::size_t axis, bool in_brick, bool in_cell) {
+            point[axis] = in_brick ? 0 : in_cell ? cell_low_[axis] : point[axis];
+        };
+        fold_one(0, brick_.same_along.x, same_along_->x);
+        fold_one(1, brick_.same_along.lateral, same_along_->lateral);
     }
 
     [[nodiscard]] Vector3 hub_m(const Point& point) const {
@@ -301,36 +371,47 @@ class BrickBuilder {
     bool is_of_walls_;
     double longest_m_;
     Point first_{}, last_{};  ///< cells, to before the last
-    bool is_calm_ = false;    ///< the whole brick
-    std::size_t boxes_ = VolumeBrick::cell_count;
-    std::shared_ptr<OwnedBrick> brick_;
-    std::map<std::array<Triquadratic, 2>, std::uint32_t> known_fits_;
-    KnownFactors known_;  ///< at points of the lattice
+    OwnedBrick& brick_;
+    Point cell_low_{};                     ///< of the cell that is looked into
+    std::optional<SameAlong> same_along_;  ///< in that cell; empty: not looked at
 };
 
 }  // namespace
 
-void OwnedBrick::seal() {
-    all_nodes.shrink_to_fit();
-    all_polynomials.shrink_to_fit();
-    nodes = all_nodes.data();
-    polynomials = all_polynomials.data();
-    nodes_size = static_cast<std::uint32_t>(all_nodes.size());
-    polynomials_size = static_cast<std::uint32_t>(all_polynomials.size());
+void OwnedBrick::publish(VolumeNode& node, const VolumeNode& content) {
+    node.margin_m = content.margin_m;
+    node.halves = content.halves;
+    node.polynomials = content.polynomials;
+    __atomic_store(&node.kind, &content.kind, __ATOMIC_RELEASE);
 }
 
-bool operator==(const VolumeBrick& a, const VolumeBrick& b) {
-    const auto are_same = [](const VolumeNode& x, const VolumeNode& y) {
-        return x.kind_and_index == y.kind_and_index && x.margin_m == y.margin_m;
-    };
-    return std::equal(a.cells, a.cells + VolumeBrick::cell_count, b.cells, are_same) &&
-           std::equal(a.nodes, a.nodes + a.nodes_size, b.nodes, b.nodes + b.nodes_size, are_same) &&
-           std::equal(a.polynomials, a.polynomials + a.polynomials_size, b.polynomials,
-                      b.polynomials + b.polynomials_size);
+const Triquadratic* OwnedBrick::keep(const Triquadratic& all, const Triquadratic& above) {
+    return all_pairs.emplace_back(std::array{all, above}).data();
 }
 
-std::shared_ptr<const OwnedBrick> make_brick(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number) {
-    return BrickBuilder(effect, grid, number).brick();
+std::size_t OwnedBrick::memory_bytes() const {
+    return sizeof(*this) + all_halves.size() * sizeof(all_halves.front()) + polynomials() * sizeof(Triquadratic) +
+           samples.memory_bytes();
+}
+
+std::unique_ptr<OwnedBrick> make_brick(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number) {
+    auto brick = std::make_unique<OwnedBrick>();
+    return BrickBuilder(effect, grid, number, *brick).look_at_whole() ? std::move(brick) : nullptr;
+}
+
+void explore(const DirectEffect& effect, const VolumeGrid& grid, const PlaceInBrick& place, OwnedBrick& brick) {
+    BrickBuilder(effect, grid, place.brick, brick).explore(place);
+}
+
+void explore_all(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number, OwnedBrick& brick) {
+    BrickBuilder(effect, grid, number, brick).explore_all();
+}
+
+bool agrees_with_effect(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number,
+                        const VolumeBrick& brick) {
+    OwnedBrick blank;
+    BrickBuilder builder(effect, grid, number, blank);
+    return builder.look_at_whole() && builder.agrees(brick);
 }
 
 }  // namespace downwash

@@ -128,6 +128,29 @@ DirectEffect DirectEffect::fountain(std::shared_ptr<const Scene> scene, const Ae
     return effect;
 }
 
+DirectEffect DirectEffect::fountain_on_disc(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                            double rotor_radius_m, const RotorNeighbours& neighbours) {
+    DirectEffect effect = fountain(std::move(scene), settings, rotor_radius_m, neighbours);
+    effect.fountain_hubs_m_ = {{0, 0, 0}};
+    effect.column_radius_m_ = rotor_radius_m;
+    return effect;
+}
+
+DirectEffect DirectEffect::image(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                 double rotor_radius_m, double distance_radii) {
+    AeroSettings of_image = settings;
+    of_image.ground = of_image.ceiling = EffectModel::none;
+    of_image.map = nullptr;
+    DirectEffect effect(std::move(scene), of_image, rotor_radius_m);
+    for (const auto& [model, curve] :
+         {std::pair(settings.ground.model, &effect.ground_), std::pair(settings.ceiling.model, &effect.ceiling_)}) {
+        if (is_multirotor(model)) {
+            *curve = EffectCurve::image(distance_radii, settings.max_factor);
+        }
+    }
+    return effect;
+}
+
 DirectEffect DirectEffect::walls(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
                                  double rotor_radius_m, double reach_m, double heading_rad) {
     AeroSettings of_walls = settings;
@@ -184,29 +207,31 @@ double DirectEffect::wall_nearness(const Vector3& center_m) const {
     return towards * std::exp(-gap_m / (settings_.wall.decay_radii * rotor_radius_m_));
 }
 
-double DirectEffect::one_sided(Side side, const Vector3& hub_m) const {
+double DirectEffect::averaged(Side side, const Vector3& hub_m, const EffectCurve& curve) const {
+    const CurveMean* mean = (side == Side::below ? ground_mean_ : ceiling_mean_).get();
+    return disc_average({*scene_, hub_m, rotor_radius_m_, side, curve, rotor_radius_m_, mean}, *footprints_);
+}
+
+double DirectEffect::one_sided(Side side, const Vector3& hub_m, const std::span<const Vector3>* neighbours_m) const {
     const bool is_below = side == Side::below;
     const EffectCurve& curve = is_below ? ground_ : ceiling_;
     if (curve.is_none()) {
         return 1;
     }
     if (const RotorImages* images = (is_below ? ground_images_ : ceiling_images_).get()) {
-        return images->factor({*scene_, *footprints_, side}, hub_m);
+        const DiscSide on{*scene_, *footprints_, side};
+        return neighbours_m != nullptr ? images->factor(on, hub_m, *neighbours_m) : images->factor(on, hub_m);
     }
-    const auto averaged = [&](const Vector3& at_m, const EffectCurve& of) {
-        const CurveMean* mean = (is_below ? ground_mean_ : ceiling_mean_).get();
-        return disc_average({*scene_, at_m, rotor_radius_m_, side, of, rotor_radius_m_, mean}, *footprints_);
-    };
     if (is_below && !fountain_hubs_m_.empty()) {
         double sum = 0;
         for (const Vector3& offset_m : fountain_hubs_m_) {
-            sum += averaged({hub_m[0] + offset_m[0], hub_m[1] + offset_m[1], hub_m[2]}, curve);
+            sum += averaged(side, {hub_m[0] + offset_m[0], hub_m[1] + offset_m[1], hub_m[2]}, curve);
         }
         return sum / static_cast<double>(fountain_hubs_m_.size());
     }
     return curve.depends_on_wall()
-               ? averaged(hub_m, curve.at_wall(horizontal_clearance_m(*scene_, hub_m) / rotor_radius_m_))
-               : averaged(hub_m, curve);
+               ? averaged(side, hub_m, curve.at_wall(horizontal_clearance_m(*scene_, hub_m) / rotor_radius_m_))
+               : averaged(side, hub_m, curve);
 }
 
 DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
@@ -222,15 +247,37 @@ DirectEffect::Factors DirectEffect::factors(const Vector3& hub_m) const {
         constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
         return {unknown, unknown, settings_.map->contains(hub_m) ? settings_.map->factor(hub_m) : 1.0};
     }
-    factors.ground = one_sided(Side::below, hub_m);
-    factors.ceiling = one_sided(Side::above, hub_m);
-    factors.total = lane::clamp(1 + (factors.ground - 1) + (factors.ceiling - 1), 0.0, settings_.max_factor);
-    return factors;
+    return superposed(one_sided(Side::below, hub_m), one_sided(Side::above, hub_m));
+}
+
+DirectEffect::Factors DirectEffect::superposed(double ground, double ceiling) const {
+    return {ground, ceiling, lane::clamp(1 + (ground - 1) + (ceiling - 1), 0.0, settings_.max_factor)};
 }
 
 SidedFactor<double> DirectEffect::sided_factor(const Vector3& hub_m) const {
     const Factors k = factors(hub_m);
     return {k.total, settings_.map || wall_view_ ? k.total : lane::clamp(k.ceiling, 0.0, settings_.max_factor)};
+}
+
+SidedFactor<double> DirectEffect::sided_factor(const Vector3& hub_m, std::span<const Vector3> neighbours_m) const {
+    if (!settings_.enabled || settings_.map || wall_view_ || !is_finite(hub_m) ||
+        !(ground_images_ || ceiling_images_)) {
+        return sided_factor(hub_m);
+    }
+    const Factors k =
+        superposed(one_sided(Side::below, hub_m, &neighbours_m), one_sided(Side::above, hub_m, &neighbours_m));
+    return {k.total, lane::clamp(k.ceiling, 0.0, settings_.max_factor)};
+}
+
+double DirectEffect::fountain_factor(std::span<const Vector3> hubs_m) const {
+    if (!settings_.enabled || ground_.is_none() || hubs_m.empty()) {
+        return 1;
+    }
+    double sum = 0;
+    for (const Vector3& hub_m : hubs_m) {
+        sum += is_finite(hub_m) ? averaged(Side::below, hub_m, ground_) : 1;
+    }
+    return lane::clamp(sum / static_cast<double>(hubs_m.size()), 0.0, settings_.max_factor);
 }
 
 double DirectEffect::largest_change_from_below(double beyond_radii) const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
@@ -32,6 +33,16 @@ class DOWNWASH_EXPORT DirectEffect {
     /// @param neighbours of any of its rotors   @pre settings.ground.model is multirotor_body
     [[nodiscard]] static DirectEffect fountain(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
                                                double rotor_radius_m, const RotorNeighbours& neighbours);
+
+    /// The same field at the disc of one rotor, whatever the heading: a fountain's push is its mean over all discs.
+    [[nodiscard]] static DirectEffect fountain_on_disc(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                                       double rotor_radius_m, const RotorNeighbours& neighbours);
+
+    /// What the image of one rotor does to another, as if it were K, and only on the sides whose model is one of
+    /// several rotors (docs/model.md 4.1): a field over places, whatever the heading. sided_factor() has its sides.
+    /// @param distance_radii of the two rotors
+    [[nodiscard]] static DirectEffect image(std::shared_ptr<const Scene> scene, const AeroSettings& settings,
+                                            double rotor_radius_m, double distance_radii);
 
     /// How near walls are: 1 + cos(angle) exp(-gap / decay), with the angle between the plane of motion and the nearest
     /// wall at the height of the centre between the rotors, and the gap between that wall and the nearest rotor's edge
@@ -70,6 +81,15 @@ class DOWNWASH_EXPORT DirectEffect {
     /// K of all surfaces and of those above alone. A given map does not tell them apart and counts as above.
     [[nodiscard]] SidedFactor<double> sided_factor(const Vector3& hub_m) const;
 
+    /// sided_factor() of a rotor of a vehicle at any attitude: its neighbours are at their real places. The same where
+    /// no model is one of several rotors.
+    /// @param neighbours_m their hubs, in the order of the neighbours that this was made with
+    [[nodiscard]] SidedFactor<double> sided_factor(const Vector3& hub_m, std::span<const Vector3> neighbours_m) const;
+
+    /// The fountain's push on a body among rotors at their real places, 1 + (K_whole - K_images) averaged over their
+    /// discs. @param hubs_m of all rotors   @pre made by fountain()
+    [[nodiscard]] double fountain_factor(std::span<const Vector3> hubs_m) const;
+
     /// The thrust ratio K on the commanded free-air thrust.
     [[nodiscard]] double factor(const Vector3& hub_m) const { return factors(hub_m).total; }
 
@@ -89,6 +109,8 @@ class DOWNWASH_EXPORT DirectEffect {
     /// K of wide flat surfaces below and above; not used if the settings contain a map.
     [[nodiscard]] const EffectCurve& ground() const noexcept { return ground_; }
     [[nodiscard]] const EffectCurve& ceiling() const noexcept { return ceiling_; }
+    /// The parts of the scene as rotors see them; private to aeromap.
+    [[nodiscard]] const Footprints& footprints() const noexcept { return *footprints_; }
     /// Whether this is how near walls are, see walls(), and no thrust ratio.
     [[nodiscard]] bool is_of_walls() const noexcept { return wall_view_.has_value(); }
     /// Whether it is that of walls_around().
@@ -107,7 +129,11 @@ class DOWNWASH_EXPORT DirectEffect {
         bool is_around = false;  ///< in all directions, not ahead alone
     };
 
-    [[nodiscard]] double one_sided(Side side, const Vector3& hub_m) const;
+    /// @param neighbours_m where neighbours are, if the vehicle is not level
+    [[nodiscard]] double one_sided(Side side, const Vector3& hub_m,
+                                   const std::span<const Vector3>* neighbours_m = nullptr) const;
+    [[nodiscard]] double averaged(Side side, const Vector3& hub_m, const EffectCurve& curve) const;
+    [[nodiscard]] Factors superposed(double ground, double ceiling) const;
     [[nodiscard]] double wall_nearness(const Vector3& center_m) const;
 
     std::shared_ptr<const Scene> scene_;

@@ -185,6 +185,31 @@ bool Footprint::lies_beside(const Footprint& other) const noexcept {
     return has_side_before(other) || other.has_side_before(*this);
 }
 
+bool Footprint::is_same_along(double dx, double dy, const BoundingBox& hubs, double radius) const noexcept {
+    constexpr double aligned = 1e-9;
+    for (const std::size_t axis : {0U, 1U}) {
+        if (bounds.low_m[axis] >= hubs.high_m[axis] + radius || bounds.high_m[axis] <= hubs.low_m[axis] - radius) {
+            return true;
+        }
+    }
+    if (!is_level_polygon()) {
+        return false;
+    }
+    bool ends_along = true;
+    for (const Edge& side : sides_) {
+        const auto reach = [&](const Vector3& ahead_x, const Vector3& ahead_y) {
+            return side.nx * ahead_x[0] + side.ny * ahead_y[1];
+        };
+        const double most = reach(side.nx > 0 ? hubs.high_m : hubs.low_m, side.ny > 0 ? hubs.high_m : hubs.low_m);
+        const double least = reach(side.nx > 0 ? hubs.low_m : hubs.high_m, side.ny > 0 ? hubs.low_m : hubs.high_m);
+        if (least - radius >= side.reach) {
+            return true;  // the part is beyond this edge
+        }
+        ends_along = ends_along && (most + radius <= side.reach || std::abs(side.nx * dx + side.ny * dy) < aligned);
+    }
+    return ends_along;
+}
+
 Footprints::Footprints(const Scene& scene, double radius_m)
     : scene_(scene),
       primitives_(scene.part_count() > few_parts ? std::vector<Footprint>{} : footprints_of_primitives(scene)),

@@ -38,6 +38,11 @@ struct Footprint {
     /// @pre both are level polygons
     [[nodiscard]] bool lies_beside(const Footprint& other) const noexcept;
 
+    /// Whether discs among hubs in a box see the same of the part wherever they are along a level direction: it is a
+    /// level polygon whose edges over those discs lead that way, or over none of them. False where that is not seen.
+    /// @param dx,dy of length 1
+    [[nodiscard]] bool is_same_along(double dx, double dy, const BoundingBox& hubs, double radius) const noexcept;
+
     std::size_t part;
     BoundingBox bounds;
     bool is_level;                 ///< see Scene::is_level

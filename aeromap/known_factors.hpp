@@ -15,6 +15,7 @@ namespace downwash {
 class KnownFactors {
  public:
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
+    [[nodiscard]] std::size_t memory_bytes() const noexcept { return entries_.capacity() * sizeof(Entry); }
 
     void clear() noexcept {
         entries_.clear();

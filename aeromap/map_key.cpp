@@ -164,6 +164,10 @@ std::string map_key(const VolumeMap& map) {
     description.add_all(map.low_m()).add_all(map.high_m());
     add_direct_effect(description, map.effect());
     description.add(map.effect().is_of_walls_around() ? "around" : "ahead");
+    for (const EffectCurve* curve : {&map.effect().ground(), &map.effect().ceiling()}) {
+        description.add(curve->image_distance_radii());
+    }
+    description.add(map.effect().column_radius_m());
     add_scene(description, map.effect().scene());
     return sha256_hex(description.text());
 }

@@ -3,6 +3,7 @@
 // Private to aeromap.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "downwash/aeromap/disc_query.hpp"
@@ -27,6 +28,9 @@ class RotorImages {
 
     /// K of a rotor at a hub.
     [[nodiscard]] double factor(const DiscSide& on, const Vector3& hub_m) const;
+    /// The same with the neighbours' hubs wherever the vehicle's attitude puts them. The image of each is that of the
+    /// level vehicle. @param neighbours_m in the order of the neighbours that this was made with
+    [[nodiscard]] double factor(const DiscSide& on, const Vector3& hub_m, std::span<const Vector3> neighbours_m) const;
     /// Upper bound of K - 1 where no surface is nearer than this to the rotor's own plane.
     [[nodiscard]] double largest_change_beyond(double z_over_r) const;
 
@@ -39,7 +43,9 @@ class RotorImages {
     [[nodiscard]] double mean(const DiscSide& on, const Vector3& hub_m, const EffectCurve& curve,
                               const CurveMean* integral = nullptr) const;
     /// The share of a rotor's induced velocity that all images take; may exceed 1 close to a surface.
-    [[nodiscard]] double loss(const DiscSide& on, const Vector3& hub_m) const;
+    /// @param neighbour_m the hub of a neighbour by its number
+    template <class NeighbourHub>
+    [[nodiscard]] double loss(const DiscSide& on, const Vector3& hub_m, const NeighbourHub& neighbour_m) const;
 
     double radius_m_;
     double max_factor_;

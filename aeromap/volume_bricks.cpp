@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "downwash/aeromap/volume_map.hpp"
@@ -12,6 +11,20 @@
 
 namespace downwash {
 namespace {
+
+/// Adds the time from its making to its end to a sum.
+class TimeSpent {
+ public:
+    explicit TimeSpent(std::atomic<std::int64_t>& sum_ns) : sum_ns_(sum_ns) {}
+    ~TimeSpent() { sum_ns_ += std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin_).count(); }
+    TimeSpent(const TimeSpent&) = delete;
+    TimeSpent& operator=(const TimeSpent&) = delete;
+
+ private:
+    using Clock = std::chrono::steady_clock;
+    std::atomic<std::int64_t>& sum_ns_;
+    Clock::time_point begin_ = Clock::now();
+};
 
 constexpr double longest_radii = 0.45;  // of a cell's edge: no obstacle is missed
 
@@ -51,13 +64,38 @@ VolumeGrid grid_over(const PlaneOfMotion& frame, const Bounds& extent, double la
 }
 
 /// Nothing near anywhere: the flyable area's end is at least R away.
-std::shared_ptr<const VolumeBrick> calm_brick(double radius_m) {
-    auto brick = std::make_shared<OwnedBrick>();
+std::unique_ptr<const VolumeBrick> calm_brick(double radius_m) {
+    auto brick = std::make_unique<VolumeBrick>();
     for (VolumeNode& cell : brick->cells) {
-        cell.margin_m = static_cast<float>(radius_m);
+        cell = {VolumeNodeKind::calm, static_cast<float>(radius_m), nullptr, nullptr};
     }
-    brick->seal();
     return brick;
+}
+
+/// Gives a node and what is below it the content of another one where it has none.
+void adopt(VolumeNode& node, const VolumeNode& theirs, OwnedBrick& brick) {
+    if (theirs.kind == VolumeNodeKind::unknown) {
+        return;
+    }
+    const bool was_unknown = node.kind == VolumeNodeKind::unknown;
+    VolumeNode content = was_unknown ? theirs : node;
+    if (was_unknown && theirs.polynomials != nullptr) {
+        content.polynomials = theirs.kind == VolumeNodeKind::both
+                                  ? brick.keep(theirs.polynomials[0], theirs.polynomials[1])
+                                  : brick.keep(theirs.polynomials[0]);
+    }
+    if (is_halving(theirs.kind)) {
+        if (node.kind != theirs.kind && !was_unknown) {
+            return;
+        }
+        content.halves = was_unknown ? brick.new_halves() : node.halves;
+        for (const std::size_t which : {0U, 1U}) {
+            adopt(content.halves[which], theirs.halves[which], brick);
+        }
+    }
+    if (was_unknown) {
+        brick.publish(node, content);
+    }
 }
 
 }  // namespace
@@ -75,7 +113,9 @@ VolumeBricks::VolumeBricks(std::shared_ptr<const DirectEffect> effect, const Pla
     : effect_(std::move(effect)),
       grid_(grid_over(frame, extent, lateral_low_m, lateral_high_m, effect_->rotor_radius_m())),
       calm_(calm_brick(effect_->rotor_radius_m())),
-      store_(grid_.brick_count()) {}
+      places_(grid_.brick_count(), nullptr),
+      owners_(places_.size()),
+      is_new_(places_.size(), 0) {}
 
 VolumeView VolumeBricks::view() noexcept {
     VolumeView view{};
@@ -90,61 +130,158 @@ VolumeView VolumeBricks::view() noexcept {
     view.bricks[0] = grid_.bricks[0];
     view.bricks[1] = grid_.bricks[1];
     view.calm_value = effect_->is_of_walls_around() ? 0 : 1;
-    view.places = store_.slots();
+    view.places = places_.data();
     view.source = this;
     return view;
 }
 
-std::shared_ptr<const VolumeBrick> VolumeBricks::made(std::size_t number) {
-    using Clock = std::chrono::steady_clock;
-    const Clock::time_point begin = Clock::now();
-    std::shared_ptr<const VolumeBrick> brick = make_brick(*effect_, grid_, number);
-    filling_ns_ += std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - begin).count();
-    return brick == nullptr ? calm_ : brick;
-}
-
-const VolumeBrick& VolumeBricks::filled(std::size_t number) {
-    if (store_.is_in_the_making(number)) {
-        look_ahead(number);
+void VolumeBricks::put(std::size_t number, std::unique_ptr<OwnedBrick> brick) {
+    const std::scoped_lock lock(mutex_);
+    if (places_[number] == nullptr) {
+        owners_[number] = std::move(brick);
+        const VolumeBrick* const place = owners_[number] != nullptr ? owners_[number].get() : calm_.get();
+        __atomic_store_n(&places_[number], place, __ATOMIC_RELEASE);
     }
-    return store_.get(number, [this](std::size_t which) { return made(which); });
 }
 
-/// Fills a brick beside one, if there is any to fill.
-void VolumeBricks::look_ahead(std::size_t number) {
-    const auto at = grid_.brick_at(number);
-    std::size_t stride = 1;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto is_filled_here = [this](std::size_t which) {
-            return store_.try_make(which, [this](std::size_t one) { return made(one); });
-        };
-        if ((at[axis] + 1 < grid_.bricks[axis] && is_filled_here(number + stride)) ||
-            (at[axis] > 0 && is_filled_here(number - stride))) {
-            return;
+const VolumeBrick& VolumeBricks::made(std::size_t number) {
+    const VolumeBrick* place = __atomic_load_n(&places_[number], __ATOMIC_ACQUIRE);
+    if (place == nullptr) {
+        const TimeSpent spent(filling_ns_);
+        put(number, make_brick(*effect_, grid_, number));
+        note_explored(number);
+        place = __atomic_load_n(&places_[number], __ATOMIC_ACQUIRE);
+    }
+    return *place;
+}
+
+void VolumeBricks::explore(const PlaceInBrick& place) {
+    OwnedBrick& brick = *owners_[place.brick];
+    {
+        const std::scoped_lock lock(brick.mutex);
+        const TimeSpent spent(filling_ns_);
+        downwash::explore(*effect_, grid_, place, brick);
+    }
+    note_explored(place.brick);
+}
+
+/// Lets bricks forget their samples that nobody has asked lately.
+void VolumeBricks::note_explored(std::size_t number) {
+    constexpr std::size_t max_lately = 64;
+    OwnedBrick* forgets = nullptr;
+    {
+        const std::scoped_lock lock(mutex_);
+        is_new_[number] = 1;
+        if (owners_[number] != nullptr && std::find(lately_.begin(), lately_.end(), number) == lately_.end()) {
+            lately_.push_back(number);
         }
-        stride *= grid_.bricks[axis];
+        if (lately_.size() > max_lately) {
+            forgets = owners_[lately_.front()].get();
+            lately_.pop_front();
+        }
+    }
+    if (forgets != nullptr) {
+        const std::scoped_lock lock(forgets->mutex);
+        forgets->samples = {};
     }
 }
 
 void VolumeBricks::fill(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over) {
     throw_if_over(is_over);
-    std::vector<std::size_t> missing;
-    for (std::size_t number = 0; number < store_.size(); ++number) {
-        if (store_.find(number) == nullptr) {
-            missing.push_back(number);
-        }
-    }
     run_parallel(
-        missing.size(), threads,
-        [&](std::size_t i) {
+        places_.size(), threads,
+        [&](std::size_t number) {
             throw_if_over(is_over);
-            store_.get(missing[i], [this](std::size_t which) { return made(which); });
+            static_cast<void>(made(number));
+            if (owners_[number] != nullptr) {
+                {
+                    const std::scoped_lock lock(owners_[number]->mutex);
+                    const TimeSpent spent(filling_ns_);
+                    explore_all(*effect_, grid_, number, *owners_[number]);
+                    owners_[number]->samples = {};
+                }
+                note_explored(number);
+            }
         },
         on_progress);
 }
 
-const VolumeBrick& filled_brick(const VolumeView& view, std::size_t number) {
-    return view.source->filled(number);
+std::vector<std::size_t> VolumeBricks::made() const {
+    const std::scoped_lock lock(mutex_);
+    std::vector<std::size_t> numbers;
+    for (std::size_t number = 0; number < places_.size(); ++number) {
+        if (places_[number] != nullptr) {
+            numbers.push_back(number);
+        }
+    }
+    return numbers;
+}
+
+std::vector<std::size_t> VolumeBricks::take_new() {
+    const std::scoped_lock lock(mutex_);
+    std::vector<std::size_t> numbers;
+    for (std::size_t number = 0; number < places_.size(); ++number) {
+        if (std::exchange(is_new_[number], std::uint8_t{0}) != 0) {
+            numbers.push_back(number);
+        }
+    }
+    return numbers;
+}
+
+bool VolumeBricks::is_calm(std::size_t number) const {
+    return __atomic_load_n(&places_[number], __ATOMIC_ACQUIRE) == calm_.get();
+}
+
+void VolumeBricks::adopt(std::size_t number, std::unique_ptr<OwnedBrick> brick) {
+    if (__atomic_load_n(&places_[number], __ATOMIC_ACQUIRE) == nullptr) {
+        if (brick != nullptr) {  // what is the same in the whole brick is not in its bytes
+            std::unique_ptr<OwnedBrick> blank = make_brick(*effect_, grid_, number);
+            if (blank == nullptr) {
+                return;
+            }
+            put(number, std::move(blank));
+        } else {
+            put(number, nullptr);
+        }
+    }
+    if (brick != nullptr && !is_calm(number)) {
+        OwnedBrick& ours = *owners_[number];
+        const std::scoped_lock lock(ours.mutex);
+        for (std::size_t cell = 0; cell < VolumeBrick::cell_count; ++cell) {
+            downwash::adopt(ours.cells[cell], brick->cells[cell], ours);
+        }
+    }
+}
+
+template <class Each>
+void VolumeBricks::for_each_owned(const Each& each) const {
+    for (const std::size_t number : made()) {
+        if (!is_calm(number)) {
+            const std::scoped_lock lock(owners_[number]->mutex);
+            each(*owners_[number]);
+        }
+    }
+}
+
+std::size_t VolumeBricks::polynomials() const {
+    std::size_t count = 0;
+    for_each_owned([&](const OwnedBrick& brick) { count += brick.polynomials(); });
+    return count;
+}
+
+std::size_t VolumeBricks::memory_bytes() const {
+    // Pointers to a brick and to its owner, and a flag, whether there is one or not.
+    std::size_t bytes = sizeof(*this) + sizeof(VolumeBrick) + places_.size() * (2 * sizeof(void*) + 1);
+    for_each_owned([&](const OwnedBrick& brick) { bytes += brick.memory_bytes(); });
+    return bytes;
+}
+
+const VolumeBrick& made_brick(const VolumeView& view, std::size_t number) {
+    return view.source->made(number);
+}
+
+void explore(const VolumeView& view, const PlaceInBrick& place) {
+    view.source->explore(place);
 }
 
 SidedFactor<double> direct_value(const VolumeView& view, double x_m, double y_m, double z_m) {

@@ -6,16 +6,15 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <span>
-#include <string>
-#include <string_view>
+#include <mutex>
 #include <vector>
 
-#include "downwash/aeromap/block_store.hpp"
 #include "downwash/aeromap/direct_effect.hpp"
+#include "downwash/aeromap/known_factors.hpp"
+#include "downwash/aeromap/same_along.hpp"
 #include "downwash/aeromap/volume_view.hpp"
 #include "downwash/base/bounds.hpp"
 #include "downwash/base/stop_condition.hpp"
@@ -23,25 +22,30 @@
 
 namespace downwash {
 
-/// A brick with the memory of what it holds.
+/// A brick with the memory of what it holds. Nodes and polynomials keep their places while it grows.
 struct OwnedBrick : VolumeBrick {
-    OwnedBrick() : VolumeBrick{} {
-        for (VolumeNode& cell : cells) {
-            cell = VolumeNode::of(VolumeNodeKind::calm, 0, 0);
-        }
-    }
+    OwnedBrick() : VolumeBrick{} {}
     OwnedBrick(const OwnedBrick&) = delete;
     OwnedBrick& operator=(const OwnedBrick&) = delete;
 
-    /// Ends the filling: what it holds is what look-ups find from now on, and must not change.
-    void seal();
+    /// Gives an unknown node its content: readers see all of it or nothing. @pre the lock is held
+    void publish(VolumeNode& node, const VolumeNode& content);
+    /// Two nodes that are unknown.
+    VolumeNode* new_halves() { return all_halves.emplace_back().data(); }
+    const Triquadratic* keep(const Triquadratic& polynomial) { return &all_polynomials.emplace_back(polynomial); }
+    const Triquadratic* keep(const Triquadratic& all, const Triquadratic& above);
+    [[nodiscard]] std::size_t polynomials() const { return all_polynomials.size() + 2 * all_pairs.size(); }
+    [[nodiscard]] std::size_t memory_bytes() const;
 
-    std::vector<VolumeNode> all_nodes;
-    std::vector<Triquadratic> all_polynomials;
+    mutable std::mutex mutex;  ///< guards all below, and writing to nodes
+    std::deque<std::array<VolumeNode, 2>> all_halves;
+    std::deque<Triquadratic> all_polynomials;
+    std::deque<std::array<Triquadratic, 2>> all_pairs;
+    /// K at points that boxes share, for as long as the brick is asked often. Nothing depends on what is known.
+    KnownFactors samples;
+    bool is_calm = false;  ///< no surface has an effect; boxes only say where one may fly
+    SameAlong same_along;  ///< in the whole brick
 };
-
-/// Whether look-ups find the same in both.
-[[nodiscard]] bool operator==(const VolumeBrick& a, const VolumeBrick& b);
 
 /// The cells of a volume.
 struct VolumeGrid {
@@ -63,12 +67,22 @@ struct VolumeGrid {
 /// What a volume interpolates, evaluated directly; see direct_value().
 [[nodiscard]] SidedFactor<double> direct_value(const DirectEffect& effect, const Vector3& hub_m);
 
-/// A brick: a pure function of effect, grid and number.
+/// A brick of which nothing is known.
 /// @return null where no surface has an effect, and the flyable area's end is at least R away from all cells
-[[nodiscard]] std::shared_ptr<const OwnedBrick> make_brick(const DirectEffect& effect, const VolumeGrid& grid,
-                                                           std::size_t number);
+[[nodiscard]] std::unique_ptr<OwnedBrick> make_brick(const DirectEffect& effect, const VolumeGrid& grid,
+                                                     std::size_t number);
 
-/// What copies of a volume share: its bricks, and how to fill them. Safe to share between threads.
+/// Makes a box known, and all halvings that lead to it. What they are is a function of effect, grid and place alone.
+/// @pre the brick's lock is held
+void explore(const DirectEffect& effect, const VolumeGrid& grid, const PlaceInBrick& place, OwnedBrick& brick);
+/// The same of all boxes of a brick.
+void explore_all(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number, OwnedBrick& brick);
+
+/// Whether a sample that a brick was made from is what the effect gives today.
+[[nodiscard]] bool agrees_with_effect(const DirectEffect& effect, const VolumeGrid& grid, std::size_t number,
+                                      const VolumeBrick& brick);
+
+/// What copies of a volume share: its bricks, and how to look into them. Safe to share between threads.
 class VolumeBricks {
  public:
     /// @throws InputError as VolumeMap
@@ -79,28 +93,44 @@ class VolumeBricks {
     [[nodiscard]] const VolumeGrid& grid() const noexcept { return grid_; }
     [[nodiscard]] VolumeView view() noexcept;
 
-    /// A brick, filled if need be. While another thread fills it, this one fills a neighbour, and then waits.
-    const VolumeBrick& filled(std::size_t number);
-
-    /// Fills all bricks. @throws WorkStopped when it is over before
+    /// A brick, made if nobody has asked for it before.
+    const VolumeBrick& made(std::size_t number);
+    void explore(const PlaceInBrick& place);
+    /// Makes all boxes known. @throws WorkStopped when it is over before
     void fill(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over);
 
-    [[nodiscard]] BlockStore<VolumeBrick>& store() noexcept { return store_; }
-    [[nodiscard]] const BlockStore<VolumeBrick>& store() const noexcept { return store_; }
-    /// The brick that stands for all in which nothing has an effect.
-    [[nodiscard]] const std::shared_ptr<const VolumeBrick>& calm() const noexcept { return calm_; }
+    /// The numbers of the bricks that somebody has asked for, in their order.
+    [[nodiscard]] std::vector<std::size_t> made() const;
+    /// The numbers of those in which something has become known here since the last call: all but what was adopted.
+    [[nodiscard]] std::vector<std::size_t> take_new();
+    /// Whether a brick is one of those in which nothing has an effect. @pre it is made
+    [[nodiscard]] bool is_calm(std::size_t number) const;
+    /// @pre it is made, and not calm
+    [[nodiscard]] OwnedBrick& owned(std::size_t number) { return *owners_[number]; }
 
+    /// Adds what another brick of this number knows; null: a calm one.
+    void adopt(std::size_t number, std::unique_ptr<OwnedBrick> brick);
+
+    [[nodiscard]] std::size_t polynomials() const;
+    [[nodiscard]] std::size_t memory_bytes() const;
     /// What all threads together have spent on filling so far [s].
     [[nodiscard]] double filling_s() const noexcept { return 1e-9 * static_cast<double>(filling_ns_.load()); }
 
  private:
-    [[nodiscard]] std::shared_ptr<const VolumeBrick> made(std::size_t number);
-    void look_ahead(std::size_t number);
+    /// Puts a brick in its place, unless there is one.
+    void put(std::size_t number, std::unique_ptr<OwnedBrick> brick);
+    void note_explored(std::size_t number);
+    template <class Each>
+    void for_each_owned(const Each& each) const;
 
     std::shared_ptr<const DirectEffect> effect_;
     VolumeGrid grid_;
-    std::shared_ptr<const VolumeBrick> calm_;
-    BlockStore<VolumeBrick> store_;
+    std::unique_ptr<const VolumeBrick> calm_;
+    std::vector<const VolumeBrick*> places_;  ///< read by everybody, by atomic loads
+    mutable std::mutex mutex_;                ///< guards all below, and writing to places_
+    std::vector<std::unique_ptr<OwnedBrick>> owners_;
+    std::vector<std::uint8_t> is_new_;
+    std::deque<std::size_t> lately_;  ///< bricks that keep their samples
     std::atomic<std::int64_t> filling_ns_{0};
 };
 

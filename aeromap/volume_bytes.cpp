@@ -1,16 +1,18 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
+#include <memory>
+#include <mutex>
 #include <type_traits>
 #include <utility>
 
 #include "downwash/aeromap/volume_bricks.hpp"
 #include "downwash/aeromap/volume_map.hpp"
 
-// A volume as bytes: the counts of cells along x, lateral and z and of the bricks that follow; then of every brick, in
-// their order, its number, whether it is calm, and if it is not, the counts of its nodes and polynomials, its cells,
-// nodes and polynomials.
+// A volume as bytes: the format, the counts of cells along x, lateral and z and of the bricks that follow; then of
+// every brick, in their order, its number, whether it is calm, and if it is not, its cells. Of every cell its kind, the
+// margin of a box, its polynomials, the halves of a halving, lower first. So bytes do not depend on who asked first.
 
 namespace downwash {
 namespace {
@@ -38,82 +40,88 @@ bool take(std::string_view& bytes, std::size_t count, Element* to) {
     return true;
 }
 
-template <class Element>
-bool take(std::string_view& bytes, std::uint64_t count, std::vector<Element>& to) {
-    if (count > bytes.size() / sizeof(Element)) {
-        return false;
-    }
-    to.resize(count);
-    return take(bytes, to.size(), to.data());
-}
-
 bool take_count(std::string_view& bytes, std::uint64_t& count) {
     return take(bytes, 1, &count);
 }
 
-/// Whether look-ups end, stay within the brick and find numbers there.
-bool is_sound(const OwnedBrick& brick) {
-    const auto is_good = [&brick](const VolumeNode& node, std::size_t behind) {
-        switch (node.kind()) {
-            case VolumeNodeKind::calm:
-            case VolumeNodeKind::direct:
-                return std::isfinite(node.margin_m);
-            case VolumeNodeKind::below:
-            case VolumeNodeKind::above:
-                return std::isfinite(node.margin_m) && node.index() < brick.polynomials_size;
-            case VolumeNodeKind::both:
-                return std::isfinite(node.margin_m) && node.index() + 1U < brick.polynomials_size;
-            default:  // a halving: its halves stand behind it
-                return node.index() >= behind && node.index() + 1U < brick.nodes_size;
-        }
-    };
-    for (const VolumeNode& cell : brick.cells) {
-        if (!is_good(cell, 0)) {
-            return false;
-        }
-    }
-    for (std::size_t i = 0; i < brick.nodes_size; ++i) {
-        if (!is_good(brick.nodes[i], i + 1)) {
-            return false;
-        }
-    }
-    return std::all_of(brick.all_polynomials.begin(), brick.all_polynomials.end(), [](const Triquadratic& polynomial) {
-        return std::all_of(polynomial.begin(), polynomial.end(), [](float value) { return std::isfinite(value); });
-    });
+/// Incremented if volumes get other values or another layout.
+constexpr std::uint64_t volume_format = 2;
+/// More halvings behind each other than any box has.
+constexpr int max_depth = 32;
+
+std::size_t polynomials_of(VolumeNodeKind kind) {
+    return kind == VolumeNodeKind::both ? 2 : kind == VolumeNodeKind::below || kind == VolumeNodeKind::above ? 1 : 0;
 }
 
-std::shared_ptr<const VolumeBrick> take_brick(std::string_view& bytes) {
-    auto brick = std::make_shared<OwnedBrick>();
-    std::uint64_t nodes = 0;
-    std::uint64_t polynomials = 0;
-    constexpr std::uint64_t largest = 1U << 29U;  // what an index may be
-    if (!take_count(bytes, nodes) || !take_count(bytes, polynomials) || nodes > largest || polynomials > largest ||
-        !take(bytes, VolumeBrick::cell_count, &brick->cells[0]) || !take(bytes, nodes, brick->all_nodes) ||
-        !take(bytes, polynomials, brick->all_polynomials)) {
-        return nullptr;
+void append_node(std::string& bytes, const VolumeNode& node) {
+    const VolumeNodeKind kind = kind_of(node);
+    append(bytes, &kind, 1);
+    if (is_halving(kind)) {
+        append_node(bytes, node.halves[0]);
+        append_node(bytes, node.halves[1]);
+    } else if (kind != VolumeNodeKind::unknown) {
+        append(bytes, &node.margin_m, 1);
+        append(bytes, node.polynomials, polynomials_of(kind));
     }
-    brick->seal();
-    return is_sound(*brick) ? brick : nullptr;
 }
 
-std::string bytes_of(const VolumeBricks& bricks, const std::vector<std::size_t>& numbers) {
-    static_assert(sizeof(VolumeNode) == 8, "no bytes between the members");
+bool is_finite(const Triquadratic& polynomial) {
+    return std::all_of(polynomial.begin(), polynomial.end(), [](float value) { return std::isfinite(value); });
+}
+
+/// False where the bytes are no node.
+bool take_node(std::string_view& bytes, VolumeNode& node, OwnedBrick& brick, int depth) {
+    VolumeNode read;
+    if (depth > max_depth || !take(bytes, 1, &read.kind) || read.kind > VolumeNodeKind::unknown) {
+        return false;
+    }
+    if (is_halving(read.kind)) {
+        read.halves = brick.new_halves();
+        if (!take_node(bytes, read.halves[0], brick, depth + 1) ||
+            !take_node(bytes, read.halves[1], brick, depth + 1)) {
+            return false;
+        }
+    } else if (read.kind != VolumeNodeKind::unknown) {
+        std::array<Triquadratic, 2> polynomials{};
+        const std::size_t count = polynomials_of(read.kind);
+        if (!take(bytes, 1, &read.margin_m) || !std::isfinite(read.margin_m) ||
+            !take(bytes, count, polynomials.data()) || !is_finite(polynomials[0]) || !is_finite(polynomials[1])) {
+            return false;
+        }
+        read.polynomials = count == 2   ? brick.keep(polynomials[0], polynomials[1])
+                           : count == 1 ? brick.keep(polynomials[0])
+                                        : nullptr;
+    }
+    node = read;
+    return true;
+}
+
+std::unique_ptr<OwnedBrick> take_brick(std::string_view& bytes) {
+    auto brick = std::make_unique<OwnedBrick>();
+    for (VolumeNode& cell : brick->cells) {
+        if (!take_node(bytes, cell, *brick, 0)) {
+            return nullptr;
+        }
+    }
+    return brick;
+}
+
+std::string bytes_of(VolumeBricks& bricks, const std::vector<std::size_t>& numbers) {
     std::string bytes;
+    append_count(bytes, volume_format);
     for (const std::uint32_t cells : bricks.grid().cells) {
         append_count(bytes, cells);
     }
     append_count(bytes, numbers.size());
     for (const std::size_t number : numbers) {
-        const VolumeBrick& brick = *bricks.store().find(number);
-        const bool is_calm = &brick == bricks.calm().get();
         append_count(bytes, number);
-        append_count(bytes, is_calm ? 1 : 0);
-        if (!is_calm) {
-            append_count(bytes, brick.nodes_size);
-            append_count(bytes, brick.polynomials_size);
-            append(bytes, &brick.cells[0], VolumeBrick::cell_count);
-            append(bytes, brick.nodes, brick.nodes_size);
-            append(bytes, brick.polynomials, brick.polynomials_size);
+        append_count(bytes, bricks.is_calm(number) ? 1 : 0);
+        if (!bricks.is_calm(number)) {
+            const OwnedBrick& brick = bricks.owned(number);
+            const std::scoped_lock lock(brick.mutex);
+            for (const VolumeNode& cell : brick.cells) {
+                append_node(bytes, cell);
+            }
         }
     }
     return bytes;
@@ -121,33 +129,16 @@ std::string bytes_of(const VolumeBricks& bricks, const std::vector<std::size_t>&
 
 struct NumberedBrick {
     std::size_t number;
-    std::shared_ptr<const VolumeBrick> brick;
+    std::unique_ptr<OwnedBrick> brick;  ///< null: calm
 };
 
-/// Evaluates again at the low corners of some bricks, which are samples of the first cell or of its first half. This
-/// notices changes of models or integration without a new map_format_version.
+/// Evaluates again in some bricks. This notices changes of models or integration without a new format.
 bool agree_with_effect(const VolumeBricks& bricks, const std::vector<NumberedBrick>& read) {
     constexpr std::size_t samples = 64;
-    const VolumeGrid& grid = bricks.grid();
     const std::size_t stride = std::max<std::size_t>(1, read.size() / samples);
     for (std::size_t n = 0; n < read.size(); n += stride) {
-        const VolumeBrick& brick = *read[n].brick;
-        VolumeNode node = brick.cells[0];
-        while (node.kind() <= VolumeNodeKind::halved_z) {
-            node = brick.nodes[node.index()];
-        }
-        if (node.kind() == VolumeNodeKind::calm || node.kind() == VolumeNodeKind::direct) {
-            continue;
-        }
-        const auto at = grid.brick_at(read[n].number);
-        Vector3 corner_m{};
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            corner_m[axis] =
-                grid.low_m[axis] + static_cast<double>(at[axis] * VolumeBrick::side_cells) * grid.cell_m[axis];
-        }
-        const double now =
-            direct_value(*bricks.effect(), grid.frame.to_world(corner_m[0], corner_m[1], corner_m[2])).all;
-        if (brick.polynomials[node.index()][0] != static_cast<float>(now)) {
+        if (read[n].brick != nullptr &&
+            !agrees_with_effect(*bricks.effect(), bricks.grid(), read[n].number, *read[n].brick)) {
             return false;
         }
     }
@@ -157,15 +148,19 @@ bool agree_with_effect(const VolumeBricks& bricks, const std::vector<NumberedBri
 }  // namespace
 
 std::string VolumeMap::to_bytes() const {
-    return bytes_of(*bricks_, bricks_->store().made());
+    return bytes_of(*bricks_, bricks_->made());
 }
 
 std::string VolumeMap::take_new_bytes() const {
-    const std::vector<std::size_t> numbers = bricks_->store().take_new();
+    const std::vector<std::size_t> numbers = bricks_->take_new();
     return numbers.empty() ? std::string() : bytes_of(*bricks_, numbers);
 }
 
 bool VolumeMap::add_bytes(std::string_view bytes) {
+    std::uint64_t format = 0;
+    if (!take_count(bytes, format) || format != volume_format) {
+        return false;
+    }
     for (const std::uint32_t cells : bricks_->grid().cells) {
         std::uint64_t theirs = 0;
         if (!take_count(bytes, theirs) || theirs != cells) {
@@ -173,19 +168,19 @@ bool VolumeMap::add_bytes(std::string_view bytes) {
         }
     }
     std::uint64_t count = 0;
-    if (!take_count(bytes, count) || count > bricks_->store().size()) {
+    if (!take_count(bytes, count) || count > bricks_->grid().brick_count()) {
         return false;
     }
     std::vector<NumberedBrick> read;
     for (; count > 0; --count) {
         std::uint64_t number = 0;
         std::uint64_t is_calm = 0;
-        if (!take_count(bytes, number) || !take_count(bytes, is_calm) || number >= bricks_->store().size() ||
+        if (!take_count(bytes, number) || !take_count(bytes, is_calm) || number >= bricks_->grid().brick_count() ||
             (!read.empty() && number <= read.back().number) || is_calm > 1) {
             return false;
         }
-        read.push_back({number, is_calm == 1 ? bricks_->calm() : take_brick(bytes)});
-        if (read.back().brick == nullptr) {
+        read.push_back({number, is_calm == 1 ? nullptr : take_brick(bytes)});
+        if (is_calm == 0 && read.back().brick == nullptr) {
             return false;
         }
     }
@@ -193,7 +188,7 @@ bool VolumeMap::add_bytes(std::string_view bytes) {
         return false;
     }
     for (NumberedBrick& one : read) {
-        bricks_->store().put(one.number, std::move(one.brick));
+        bricks_->adopt(one.number, std::move(one.brick));
     }
     return true;
 }

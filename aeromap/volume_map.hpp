@@ -21,14 +21,15 @@ inline constexpr std::size_t max_volume_bricks = 4194304;
 /// K over a block of rotor positions in three dimensions, for vehicles that leave one plane. Or how near walls are, if
 /// the effect is that of DirectEffect::walls_around(). Copies share what is filled.
 ///
-/// The block is a regular grid of cells at most 0.45 R wide, in bricks of 4 x 4 x 4. A brick is filled when a look-up
-/// first asks for it, and kept: a pure function of effect, block and place, whoever asks first. A cell is halved across
-/// x, lateral or z, and its halves again, until in every box the triquadratic interpolation between 27 values stays
-/// within 0.01 of the direct evaluation everywhere in the flyable area (docs/model.md 4.10). Boxes that are forbidden
-/// throughout, or where K cannot differ by more than 0.006 from 1, count as 1. Coefficients are kept as float.
+/// The block is a regular grid of cells at most 0.45 R wide. A cell is halved across x, lateral or z, and its halves
+/// again, until in every box the triquadratic interpolation between 27 values stays within 0.01 of the direct
+/// evaluation everywhere in the flyable area (docs/model.md 4.10). A box is looked into when a look-up first asks for a
+/// place in it, with the halvings that lead to it, and kept: a pure function of effect, block and place, whoever asks
+/// first. Boxes that are forbidden throughout, or where K cannot differ by more than 0.006 from 1, count as 1.
+/// Coefficients are kept as float.
 ///
-/// An edge is halved at most 7 times, to R / 284 (of walls twice). Boxes in which K still jumps are evaluated directly, and so is what
-/// would make a brick of more than max_brick_boxes. Safe to share between threads.
+/// An edge is halved at most 7 times, to R / 284 (of walls twice), and a cell at most 16 times. Boxes in which K still
+/// jumps are evaluated directly. Safe to share between threads.
 class DOWNWASH_EXPORT VolumeMap {
  public:
     /// Fills nothing, and looks at nothing in the scene.
@@ -54,7 +55,7 @@ class DOWNWASH_EXPORT VolumeMap {
     /// Whether a hub is inside the flyable area. Exact.
     [[nodiscard]] bool is_flyable(const Vector3& hub_m) const;
 
-    /// Fills what is missing, on some threads. No flight needs that.
+    /// Fills all that is missing, on some threads. No flight needs that.
     /// @param threads at least 1   @param on_progress see run_parallel
     /// @throws WorkStopped when it is over before; what was filled stays
     void fill(int threads = 1, const std::function<void(double)>& on_progress = {},
@@ -64,22 +65,23 @@ class DOWNWASH_EXPORT VolumeMap {
     [[nodiscard]] const PlaneOfMotion& frame() const noexcept;
     /// Valid while the map or a copy exists.
     [[nodiscard]] const VolumeView& view() const noexcept { return view_; }
-    /// How many bricks there are, and how many of them are filled.
+    /// How many bricks of 4 x 4 x 4 cells there are, and in how many of them somebody has asked.
     [[nodiscard]] std::size_t bricks() const noexcept;
     [[nodiscard]] std::size_t filled_bricks() const;
-    /// The number of polynomials that are kept now. Boxes of equal values in a brick share theirs.
+    /// The number of polynomials that are kept now.
     [[nodiscard]] std::size_t polynomials() const;
     /// The memory that the map takes now.
     [[nodiscard]] std::size_t memory_bytes() const;
     /// What all threads together have spent on filling so far [s].
     [[nodiscard]] double filling_s() const noexcept;
 
-    /// What is filled, as bytes. Only a machine of the same byte order can read them.
+    /// What is filled, as bytes: the same for the same places asked, in whatever order and on however many threads.
+    /// Only a machine of the same byte order can read them.
     [[nodiscard]] std::string to_bytes() const;
-    /// The bricks that were filled here since the last call, as bytes: not those that were read. Empty if there are
-    /// none.
+    /// The bricks in which something was filled here since the last call, as bytes: not what was only read. Empty if
+    /// there are none.
     [[nodiscard]] std::string take_new_bytes() const;
-    /// Adds the bricks of such bytes, equal to the last bit; false, and nothing is added, if they are not of this map,
+    /// Adds the boxes of such bytes, equal to the last bit; false, and nothing is added, if they are not of this map,
     /// or if some of their values differ from what the effect gives today.
     bool add_bytes(std::string_view bytes);
 

@@ -104,9 +104,8 @@ class VolumePatches {
     }
 
     void enter(const double (&u)[3], int lane) {
-        const VolumeBrick& brick = brick_around(view_, u);
-        const VolumeBox box = box_around(brick, u);
-        const VolumeNodeKind kind = box.node.kind();
+        const VolumeBox box = box_around(view_, u);
+        const VolumeNodeKind kind = box.kind;
         for (int axis = 0; axis < 3; ++axis) {
             // Exact: the box begins at a multiple of its edge.
             low_[axis][lane] = static_cast<double>(static_cast<std::uint32_t>(u[axis] * box.boxes_per_cell[axis])) /
@@ -116,19 +115,18 @@ class VolumePatches {
         }
         is_outside_[lane] = 0;
         is_direct_[lane] = kind == VolumeNodeKind::direct ? 1 : 0;
-        margin_m_[lane] = double{box.node.margin_m};
+        margin_m_[lane] = double{box.margin_m};
         fill(all_, lane, view_.calm_value);
         fill(above_, lane, view_.calm_value);
         if (kind == VolumeNodeKind::calm || kind == VolumeNodeKind::direct) {
             return;
         }
-        const Triquadratic* const polynomials = brick.polynomials + box.node.index();
         const std::size_t of_above = kind == VolumeNodeKind::both ? 1 : 0;
         for (int number = 0; number < coefficients; ++number) {
             const auto i = static_cast<std::size_t>(number);
-            all_[number][lane] = double{polynomials[0][i]};
+            all_[number][lane] = double{box.polynomials[0][i]};
             if (kind != VolumeNodeKind::below) {
-                above_[number][lane] = double{polynomials[of_above][i]};
+                above_[number][lane] = double{box.polynomials[of_above][i]};
             }
         }
     }

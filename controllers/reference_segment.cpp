@@ -15,7 +15,7 @@
 namespace downwash {
 namespace {
 
-double translation(const double axis[3]) {
+double translation_length(const double axis[3]) {
     return std::sqrt(axis[0] * axis[0] + axis[1] * axis[1]);
 }
 
@@ -25,12 +25,12 @@ constexpr double kept = 1 + 1e-9;
 /// a + g over g; infinite if it does not point upwards.
 double thrust_ratio(const ReferencePoint& p) {
     const double force[2] = {p.acceleration[0] / standard_gravity_m_s2, 1 + p.acceleration[1] / standard_gravity_m_s2};
-    return force[1] > 0 ? translation(force) : std::numeric_limits<double>::infinity();
+    return force[1] > 0 ? translation_length(force) : std::numeric_limits<double>::infinity();
 }
 
 double ratio_at(const ReferencePoint& p, const MotionLimits& limits) {
-    const double ratio = std::max({translation(p.velocity) / limits.max_speed_m_s,
-                                   translation(p.acceleration) / limits.max_acceleration_m_s2,
+    const double ratio = std::max({translation_length(p.velocity) / limits.max_speed_m_s,
+                                   translation_length(p.acceleration) / limits.max_acceleration_m_s2,
                                    std::abs(p.velocity[2]) / limits.max_arm_rate_rad_s,
                                    std::abs(p.acceleration[2]) / limits.max_arm_acceleration_rad_s2});
     return limits.max_thrust_ratio ? std::max(ratio, thrust_ratio(p) / *limits.max_thrust_ratio) : ratio;
@@ -162,7 +162,7 @@ double pitch_along(const ReferencePoint& point) noexcept {
 }
 
 MotionLimits limits_along(const MotionLimits& limits, const double (&way)[max_axes]) noexcept {
-    const double distance_m = translation(way);
+    const double distance_m = translation_length(way);
     if (!limits.max_thrust_ratio || !(distance_m > 0)) {
         return limits;
     }
@@ -204,7 +204,7 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
                             double tick_s) {
     double way[max_axes];
     std::transform(to.position, to.position + max_axes, from.position, way, std::minus{});
-    const double distance_m = translation(way);
+    const double distance_m = translation_length(way);
     const double arm_rad = std::abs(way[2]);
     // A hair less than the exact duration must not cost a whole tick.
     const auto ticks_of = [tick_s](double duration_s) {
@@ -220,7 +220,7 @@ std::int64_t shortest_ticks(const ReferencePoint& from, const ReferencePoint& to
     // motion within the limits needs, stretch until they are kept, then close in on the last step.
     double change[max_axes];
     std::transform(to.velocity, to.velocity + max_axes, from.velocity, change, std::minus{});
-    const double braking_s = std::max(translation(change) / limits.max_acceleration_m_s2,
+    const double braking_s = std::max(translation_length(change) / limits.max_acceleration_m_s2,
                                       std::abs(change[2]) / limits.max_arm_acceleration_rad_s2);
     if (!is_from_rest_to_rest) {
         ticks = std::max(ticks_of(0.5 * rest_to_rest_duration_s(distance_m, arm_rad, limits)), ticks_of(braking_s));

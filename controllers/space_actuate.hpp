@@ -226,7 +226,7 @@ CommandedRotors<T> command_rotors(const SpaceLawModel<n>& nominal, const dynamic
     }
     const double half_tick_s = 0.5 * tick_s;
     const T reached(half_tick_s / (half_tick_s + plant.rotor_time_constant_s));  // 1 without lag
-    T expected_n[max_rotors];
+    T expected_n[max_rotors]{};
     for (int i = 0; i < plant.rotor_count; ++i) {
         const bool leads = plant.has_rotor_lag && rotor_lead > 0;
         const T asked_n = leads ? demand_n[i] + T(rotor_lead) * (demand_n[i] - seen.thrust_n[i]) : demand_n[i];

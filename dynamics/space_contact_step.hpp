@@ -65,12 +65,13 @@ class TouchingSpace {
         : model_(model), contact_(contact), around_(around) {
         const LaneVector<double> position_m{q[0], q[1], q[2]};
         const LaneRotation<double> attitude = rotation_of(q + 3);
+        const auto& here = at_attitude<double>(around, attitude);
         for (int i = 0; i < model.rotor_count; ++i) {
-            thrust_ratio_[i] = around.thrust_ratio(i, position_m + attitude * model.rotor[i].position_m,
-                                                   attitude * model.rotor[i].axis);
+            thrust_ratio_[i] =
+                here.thrust_ratio(i, position_m + attitude * model.rotor[i].position_m, attitude * model.rotor[i].axis);
         }
         const LaneVector<double> center_m = position_m + attitude * model.center_m;
-        body_ratio_ = model.has_fountain ? around.body_ratio(center_m, attitude * model.center_axis) : 1;
+        body_ratio_ = model.has_fountain ? here.body_ratio(center_m, attitude * model.center_axis) : 1;
         wall_nearness_ = model.has_walls ? around.wall_nearness(center_m) : LaneVector<double>{0, 0, 0};
     }
 

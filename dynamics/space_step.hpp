@@ -56,10 +56,11 @@ template <class T, int n, class P, SpaceSurroundings<T> Around>
                                               const LaneVector<T>& position_m, const T thrust_n[max_rotors],
                                               const Around& around) {
     SpaceWrench<T> wrench{{T(0), T(0), T(0)}, {T(0), T(0), T(0)}};
+    const auto& here = at_attitude<T>(around, attitude);
     for (int i = 0; i < model.rotor_count; ++i) {
         const LaneVector<T> place = spread<T>(model.rotor[i].position_m);
         const LaneVector<T> axis = spread<T>(model.rotor[i].axis);
-        const T ratio = around.thrust_ratio(i, position_m + attitude * place, attitude * axis);
+        const T ratio = here.thrust_ratio(i, position_m + attitude * place, attitude * axis);
         const LaneVector<T> push = (ratio * (T(around.thrust_scale(i)) * thrust_n[i])) * axis;
         wrench.force_n = wrench.force_n + push;
         wrench.torque_nm =
@@ -74,7 +75,7 @@ template <class T, int n, class P, SpaceSurroundings<T> Around>
         }
         if (model.has_fountain) {
             const LaneVector<T> axis = spread<T>(model.center_axis);
-            const LaneVector<T> push = ((around.body_ratio(center, attitude * axis) - T(1)) * free_air_n) * axis;
+            const LaneVector<T> push = ((here.body_ratio(center, attitude * axis) - T(1)) * free_air_n) * axis;
             wrench.force_n = wrench.force_n + push;
             wrench.torque_nm = wrench.torque_nm + cross(place, push);
         }

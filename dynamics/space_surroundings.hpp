@@ -38,6 +38,27 @@ concept SpaceSurroundings = requires(const S& around, int rotor, const LaneVecto
     around.add_load(q, q, places, load);
 };
 
+/// Surroundings in which thrust ratios depend on the attitude of the whole vehicle, as among the images of several
+/// rotors. `at_attitude(attitude)` has `thrust_ratio()` and `body_ratio()` of that attitude; those of the surroundings
+/// themselves are of a level vehicle that heads along x.
+template <class S, class T>
+concept TurningSurroundings = requires(const S& around, int rotor, const LaneVector<T>& at_m,
+                                       const LaneRotation<T>& attitude) {
+    { around.at_attitude(attitude).thrust_ratio(rotor, at_m, at_m) } -> std::same_as<T>;
+    { around.at_attitude(attitude).body_ratio(at_m, at_m) } -> std::same_as<T>;
+};
+
+/// Surroundings as a vehicle with an attitude meets them: ask these for thrust_ratio() and body_ratio().
+template <class T, SpaceSurroundings<T> Around>
+[[gnu::always_inline]] inline decltype(auto) at_attitude(const Around& around,
+                                                         [[maybe_unused]] const LaneRotation<T>& attitude) {
+    if constexpr (TurningSurroundings<Around, T>) {
+        return around.at_attitude(attitude);
+    } else {
+        return static_cast<const Around&>(around);
+    }
+}
+
 /// Sine of the angle between an axis and the vertical: what tilted() in effects/sided_factor.hpp takes.
 /// @param axis of length 1, in the world
 template <class T>

@@ -114,6 +114,13 @@ void check_limits(const SpacePlan& plan, const SpaceMotionLimits& limits, List& 
     }
 }
 
+/// An impact and a release magnify what was different before.
+constexpr double touch_swing = 3;
+
+bool flight_touches(const SpaceJudgedFlight& flight) {
+    return std::ranges::any_of(flight.goals, [](const SpaceJudgedGoal& goal) { return goal.touch.has_value(); });
+}
+
 /// Where a plan has to begin; any yaw where the problem gives an attitude.
 SpacePoint begin_of(const SpaceStart& start, const SpacePoint& first) {
     SpacePoint begin;
@@ -124,6 +131,14 @@ SpacePoint begin_of(const SpaceStart& start, const SpacePoint& first) {
 }
 
 }  // namespace
+
+double worst_goal_error_m(const SpaceJudgedFlight& flight) noexcept {
+    double worst_m = 0;
+    for (const SpaceJudgedGoal& goal : flight.goals) {
+        worst_m = std::max(worst_m, goal.error_m);
+    }
+    return worst_m;
+}
 
 std::vector<Disagreement> disagreements_in_plan(const SpaceClaims& claims, const SpaceProblem& problem) {
     List list;
@@ -161,13 +176,18 @@ std::vector<Disagreement> disagreements_about_flight(const SpaceClaims& claims, 
         list.compare("execution.min_clearance_m", file_m, flight.min_clearance_m, clearance_tolerance_m);
     }
     list.compare("execution.energy_j", said.energy_j, flight.energy_j, cost_tolerance * flight.energy_j);
-    list.compare("execution.duration_s", said.duration_s, flight.duration_s, claims.plan.tick_s * (1 + rounding));
+    // When a touch begins and how far behind the surface its reference ends is a matter of a few ticks.
+    const double ticks = flight_touches(flight) ? 10 : 1;
+    list.compare("execution.duration_s", said.duration_s, flight.duration_s,
+                 ticks * claims.plan.tick_s * (1 + rounding));
     const CostFunction& objective = claims.objective;
     if (claims.has_cost && objective.weight(Objective::length) == 0 && objective.weight(Objective::clearance) == 0) {
         const double cost = objective.weight(Objective::energy) * flight.energy_j +
                             objective.weight(Objective::time) * flight.duration_s;
         list.compare("execution.cost", said.cost, cost, cost_tolerance * cost);
     }
+    list.compare("execution.goal_error_m", said.goal_error_m, worst_goal_error_m(flight),
+                 (flight_touches(flight) ? touch_swing : 1) * goal_error_tolerance_m);
     return std::move(list.found);
 }
 

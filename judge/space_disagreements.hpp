@@ -12,6 +12,9 @@
 
 namespace downwash::judge {
 
+/// The greatest error of all goals of a flight [m].
+[[nodiscard]] DOWNWASH_EXPORT double worst_goal_error_m(const SpaceJudgedFlight& flight) noexcept;
+
 /// What is wrong with the plan itself: waypoints that are not where the reference is, another start than the problem's,
 /// speeds or accelerations beyond the motion limits, an end that moves.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<Disagreement> disagreements_in_plan(const SpaceClaims& claims,

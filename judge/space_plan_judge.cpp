@@ -25,17 +25,6 @@ SpaceJudgedMotion motion_of(const SpaceStart& start) {
     return motion;
 }
 
-/// The hover after the last knot: the hold of the last goal, the longest one of its alternatives.
-std::int64_t hold_ticks(const SpaceProblem& problem) {
-    const SpaceGoal& last = problem.goals.back();
-    double hold_s = last.hold_s;
-    if (!last.any_of.empty()) {
-        hold_s = std::ranges::max(last.any_of, {}, &SpaceGoal::hold_s).hold_s;
-    }
-    const double ticks = hold_s * problem.robot.controller.rate_hz;
-    return static_cast<std::int64_t>(std::ceil(ticks - 1e-9));
-}
-
 std::vector<DrawnValues> drawn_in(const std::vector<SpaceWorld>& worlds, const SpaceRobot& robot) {
     std::vector<DrawnValues> drawn;
     for (const SpaceWorldParameter* parameter : space_world_parameters_of(robot)) {
@@ -66,7 +55,8 @@ const SpaceProblem& SpacePlanJudge::problem() const noexcept {
 SpaceJudgedFlight SpacePlanJudge::fly(const SpacePlan& plan, bool aero, const std::optional<SpaceWorld>& world) const {
     SpaceFlightConditions conditions;
     conditions.start = motion_of(problem().start);
-    conditions.hold_ticks = hold_ticks(problem());
+    conditions.goals = problem().goals;
+    conditions.in_any_order = problem().in_any_order;
     conditions.aero = aero;
     conditions.world = world;
     return shared_->judge.fly(plan, conditions);

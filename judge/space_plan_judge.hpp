@@ -25,7 +25,7 @@ class DOWNWASH_EXPORT SpacePlanJudge {
 
     [[nodiscard]] const SpaceProblem& problem() const noexcept;
 
-    /// Flies a plan from the start of the problem to the end of the hover after its last knot.
+    /// Flies a plan from the start of the problem to the end of the hover for its last goal.
     /// @param aero false: surfaces have no effect on the rotors   @param world empty: everything is nominal
     /// @pre the plan has a knot, the first at tick 0, the robot's joints and its tick
     [[nodiscard]] SpaceJudgedFlight fly(const SpacePlan& plan, bool aero = true,

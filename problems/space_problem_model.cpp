@@ -1,7 +1,6 @@
 #include "downwash/problems/space_problem_model.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "downwash/base/lane_math.hpp"
@@ -38,21 +37,11 @@ bool is_at_rest(const SpaceStart& start) noexcept {
            is_zero(start.joint_rates_rad_s);
 }
 
-std::int64_t hold_ticks(const SpaceProblem& problem) {
-    const SpaceGoal& last = problem.goals.back();
-    double hold_s = last.any_of.empty() ? last.hold_s : 0;
-    for (const SpaceGoal& alternative : last.any_of) {
-        hold_s = std::max(hold_s, alternative.hold_s);
-    }
-    constexpr double rounding = 1e-9;
-    return std::max<std::int64_t>(
-        1, static_cast<std::int64_t>(std::ceil(hold_s * problem.robot.controller.rate_hz - rounding)));
-}
-
 SpaceProblemModel::SpaceProblemModel(SpaceProblem problem)
     : problem_(std::move(problem)),
       scene_(std::make_shared<const Scene>(problem_.obstacles)),
-      checker_(scene_, shape_of(problem_.robot), problem_.planner.collision_checker) {}
+      checker_(scene_, shape_of(problem_.robot), problem_.planner.collision_checker),
+      goals_(problem_.robot, scene_, problem_.goals, problem_.in_any_order) {}
 
 SpaceFlight SpaceProblemModel::execute(const SpacePlan& plan, const SpaceExecutionSettings& settings) const {
     const SpaceRobot& robot = problem_.robot;
@@ -65,7 +54,7 @@ SpaceFlight SpaceProblemModel::execute(const SpacePlan& plan, const SpaceExecuti
     flight.checker = &checker_;
     flight.world = settings.world.value_or(SpaceWorld{});
     flight.settles = settings.world.has_value() && is_at_rest(problem_.start);
-    flight.hold_ticks = hold_ticks(problem_);
+    flight.goals = &goals_;
     flight.is_over = settings.is_over;
     return fly(robot, plan, start_motion(problem_.start), flight);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -10,6 +9,7 @@
 #include "downwash/scene/scene.hpp"
 #include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/space_flight.hpp"
+#include "downwash/simulation/space_goal_rule.hpp"
 
 namespace downwash {
 
@@ -18,10 +18,6 @@ namespace downwash {
 
 /// Whether nothing moves at the start and the vehicle is level, so that it may have hovered there for long.
 [[nodiscard]] DOWNWASH_EXPORT bool is_at_rest(const SpaceStart& start) noexcept;
-
-/// How many control ticks the last reference point is held; among alternatives of the last goal, the longest hold.
-/// @pre there is a goal
-[[nodiscard]] DOWNWASH_EXPORT std::int64_t hold_ticks(const SpaceProblem& problem);
 
 /// How to execute a plan of a problem in space.
 struct SpaceExecutionSettings {
@@ -39,7 +35,7 @@ class DOWNWASH_EXPORT SpaceProblemModel {
     [[nodiscard]] const SpaceProblem& problem() const noexcept { return problem_; }
     [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
 
-    /// Flies a plan from the start of the problem to the end of the hover after its last knot, with surface effects
+    /// Flies a plan from the start of the problem to the end of the hover for its last goal, with surface effects
     /// evaluated directly.
     /// @throws InputError if a model of surface effects cannot act in space, or the robot has more joints than this
     /// library was built for; WorkStopped when `is_over` says so
@@ -50,6 +46,7 @@ class DOWNWASH_EXPORT SpaceProblemModel {
     SpaceProblem problem_;
     std::shared_ptr<const Scene> scene_;
     SpaceChecker checker_;
+    SpaceGoalRule goals_;
 };
 
 }  // namespace downwash

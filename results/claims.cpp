@@ -12,8 +12,7 @@ namespace {
 using problems::JsonReader;
 using problems::Node;
 
-/// @param is_in_space whether the flight may have no goal error
-void read_flight(JsonReader& reader, const Node& root, bool is_in_space, std::optional<FlightClaims>& into) {
+void read_flight(JsonReader& reader, const Node& root, std::optional<FlightClaims>& into) {
     const auto node = reader.optional_group(root, "execution");
     if (!node) {
         return;
@@ -35,9 +34,7 @@ void read_flight(JsonReader& reader, const Node& root, bool is_in_space, std::op
     flight.energy_j = amount("energy_j");
     flight.duration_s = amount("duration_s");
     flight.cost = amount("cost");
-    if (!is_in_space || JsonReader::member(*node, "goal_error_m")) {
-        flight.goal_error_m = amount("goal_error_m");
-    }
+    flight.goal_error_m = amount("goal_error_m");
     if (const auto world = JsonReader::member(*node, "world"); world && world->json->is_object()) {
         flight.world = FlightClaims::WorldIndex{};
         reader.read_count(*world, "index", flight.world->index);
@@ -70,7 +67,7 @@ Claims read_claims(const std::string& path, const Problem& problem) {
         claims.plan = std::move(text.plan);
         claims.waypoints = std::move(text.waypoints);
         claims.order = problems::read_order(reader, root, problem);
-        read_flight(reader, root, false, claims.flight);
+        read_flight(reader, root, claims.flight);
         read_certificate(reader, root, claims.certified_share);
     });
     return claims;
@@ -87,7 +84,7 @@ SpaceClaims read_claims(const std::string& path, const SpaceProblem& problem) {
         claims.plan = std::move(text.plan);
         claims.waypoints = std::move(text.waypoints);
         claims.has_waypoints = text.waypoints_node.has_value();
-        read_flight(reader, root, true, claims.flight);
+        read_flight(reader, root, claims.flight);
         if (const auto node = reader.optional_group(root, "execution")) {
             const auto cost = JsonReader::member(*node, "cost");
             claims.has_cost = cost && !cost->json->is_null();

@@ -49,10 +49,10 @@ struct SpaceClaims {
     CostFunction objective;
     std::uint64_t seed = 1;
     SpacePlan plan;
-    std::vector<SpacePoint> waypoints;   ///< at rest
-    bool has_waypoints = false;          ///< a plan written by hand need not have any
-    std::optional<FlightClaims> flight;  ///< its goal error and cost are those of the file, 0 where it has none
-    bool has_cost = false;               ///< whether the file says what the flight costs
+    std::vector<SpacePoint> waypoints;  ///< at rest
+    bool has_waypoints = false;         ///< a plan written by hand need not have any
+    std::optional<FlightClaims> flight;
+    bool has_cost = false;  ///< whether the file says what the flight costs
 };
 
 /// Reads a solution file in space without comparing its parts. @throws ProblemFileError as above

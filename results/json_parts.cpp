@@ -38,4 +38,15 @@ Json objective_json(const CostFunction& objective) {
     return weights;
 }
 
+Json touch_json(const TouchRecord& touch) {
+    return {{"met", touch.is_met},
+            {"touched_s", touch.touched_s > 0 ? Json(touch.touched_s) : Json()},
+            {"left_s", touch.left_s > 0 ? Json(touch.left_s) : Json()},
+            {"force_n", json_number(touch.force_n)},
+            {"force_error_n", json_number(touch.force_error_n)},
+            {"peak_force_n", json_number(touch.peak_force_n)},
+            {"max_depth_m", json_number(touch.max_depth_m)},
+            {"power_w", json_number(touch.power_w)}};
+}
+
 }  // namespace downwash

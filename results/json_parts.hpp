@@ -9,6 +9,7 @@
 
 #include "downwash/problems/located_error.hpp"
 #include "downwash/problems/objective.hpp"
+#include "downwash/simulation/contact_goal.hpp"
 
 // Parts of solution.json that plane and space share.
 
@@ -23,5 +24,8 @@ namespace downwash {
 
 /// The value of `objective`: a name, or the weights of a sum.
 [[nodiscard]] nlohmann::ordered_json objective_json(const CostFunction& objective);
+
+/// What became of a touch, as a group.
+[[nodiscard]] nlohmann::ordered_json touch_json(const TouchRecord& touch);
 
 }  // namespace downwash

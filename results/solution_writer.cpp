@@ -177,15 +177,7 @@ Json execution_json(const Solution& solution) {
         execution["unseen_share"] = *flight.unseen_share;
     }
     if (flight.touch) {
-        const TouchRecord& touch = *flight.touch;
-        execution["contact"] = {{"met", touch.is_met},
-                                {"touched_s", touch.touched_s > 0 ? Json(touch.touched_s) : Json()},
-                                {"left_s", touch.left_s > 0 ? Json(touch.left_s) : Json()},
-                                {"force_n", json_number(touch.force_n)},
-                                {"force_error_n", json_number(touch.force_error_n)},
-                                {"peak_force_n", json_number(touch.peak_force_n)},
-                                {"max_depth_m", json_number(touch.max_depth_m)},
-                                {"power_w", json_number(touch.power_w)}};
+        execution["contact"] = touch_json(*flight.touch);
     }
     if (solution.execution_world) {
         execution["world"] = {{"index", solution.execution_world->index}, {"seed", solution.execution_world->seed}};

@@ -44,6 +44,9 @@ struct SpaceProblemReference {
 /// sum up yet.
 [[nodiscard]] DOWNWASH_EXPORT std::optional<double> cost_of(const SpaceFlight& flight, const CostFunction& objective);
 
+/// The greatest error of all goals of a flight [m].
+[[nodiscard]] DOWNWASH_EXPORT double worst_goal_error_m(const SpaceFlight& flight) noexcept;
+
 /// The text of solution.json: see the solution_json() of a plan in the plane.
 [[nodiscard]] DOWNWASH_EXPORT std::string solution_json(const SpaceSolution& solution,
                                                         const SpaceProblemReference& problem,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
@@ -38,11 +39,29 @@ Json plan_json(const std::optional<SpacePlan>& plan) {
     return {{"waypoints", std::move(waypoints)}, {"reference", std::move(reference)}};
 }
 
+Json goal_json(const SpaceGoalVisit& visit) {
+    Json goal = {{"met", visit.is_met},
+                 {"error_m", json_number(visit.error_m)},
+                 {"angle_rad", json_number(visit.angle_rad)},
+                 {"hidden", visit.is_hidden}};
+    if (const auto& touch = visit.touch) {
+        Json& contact = goal["contact"] = touch_json(*touch);
+        contact["end"] = name_of(touch->end);
+        contact["place_m"] = touch->place_m;
+        contact["slip_m"] = json_number(touch->slip_m);
+    }
+    return goal;
+}
+
 Json execution_json(const SpaceSolution& solution) {
     if (!solution.execution) {
         return {};
     }
     const SpaceFlight& flight = *solution.execution;
+    Json goals = Json::array();
+    for (const SpaceGoalVisit& visit : flight.goals) {
+        goals.push_back(goal_json(visit));
+    }
     Json execution = {{"aero", solution.aero},
                       {"outcome", name_of(flight.outcome)},
                       {"min_clearance_m", json_number(flight.min_clearance_m)},
@@ -50,7 +69,9 @@ Json execution_json(const SpaceSolution& solution) {
                       {"duration_s", json_number(flight.duration_s)},
                       {"cost", json_number(cost_of(flight, solution.objective))},
                       {"max_tracking_error_m", json_number(flight.max_tracking_error_m)},
-                      {"max_saturation", json_number(flight.max_saturation)}};
+                      {"max_saturation", json_number(flight.max_saturation)},
+                      {"goal_error_m", json_number(worst_goal_error_m(flight))},
+                      {"goals", std::move(goals)}};
     if (solution.execution_world) {
         execution["world"] = {{"index", solution.execution_world->index}, {"seed", solution.execution_world->seed}};
     }
@@ -67,6 +88,14 @@ std::optional<double> cost_of(const SpaceFlight& flight, const CostFunction& obj
     figures.energy_j = flight.energy_j;
     figures.time_s = flight.duration_s;
     return objective(figures);
+}
+
+double worst_goal_error_m(const SpaceFlight& flight) noexcept {
+    double worst_m = 0;
+    for (const SpaceGoalVisit& visit : flight.goals) {
+        worst_m = std::max(worst_m, visit.error_m);
+    }
+    return worst_m;
 }
 
 std::string solution_json(const SpaceSolution& solution, const SpaceProblemReference& problem,

@@ -11,6 +11,10 @@
 namespace downwash {
 namespace {
 
+bool touches(const SpaceFlight& flight) {
+    return std::ranges::any_of(flight.goals, [](const SpaceGoalVisit& visit) { return visit.touch.has_value(); });
+}
+
 std::vector<std::string> names_of(const SpaceFlight& flight) {
     const std::span<const Axis> axes = axes_in_space(flight.joints);
     const std::span<const Axis> joints = axes.subspan(space::first_joint);
@@ -41,6 +45,9 @@ std::vector<std::string> names_of(const SpaceFlight& flight) {
         }
         names.push_back(rotor + "_aero_factor");
     }
+    if (touches(flight)) {
+        names.emplace_back("contact_force_n");
+    }
     return names;
 }
 
@@ -70,6 +77,9 @@ std::vector<double> numbers_of(const SpaceFlight& flight, const SpaceFlightRow& 
             numbers.push_back(row.rotor_lag_n[i]);
         }
         numbers.push_back(row.rotor_factor[i]);
+    }
+    if (touches(flight)) {
+        numbers.push_back(row.contact_force_n);
     }
     return numbers;
 }

@@ -9,7 +9,8 @@
 namespace downwash {
 
 /// The numbers of a flight in space as a table, with the columns of trajectory.csv: one row per control tick. A
-/// clearance without obstacles is NaN; rotors have a lag column only when they lag.
+/// clearance without obstacles is NaN; rotors have a lag column only when they lag, and the last column, of a flight
+/// with a touch, is its force.
 [[nodiscard]] DOWNWASH_EXPORT NumberTable trajectory_table(const SpaceFlight& flight);
 
 /// The text of trajectory.csv: see the trajectory_csv() of an execution in the plane.

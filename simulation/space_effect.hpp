@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/export.hpp"
@@ -30,6 +31,16 @@ class SpaceEffect {
     virtual SidedFactor<double> at_rotor(int rotor, const dynamics::LaneVector<double>& hub_m) = 0;
     /// K by side of the body with the centre between its rotors there; 1 where there is no fountain.
     virtual SidedFactor<double> at_body(const dynamics::LaneVector<double>& /*center_m*/) { return {1, 1}; }
+    /// The same two of a vehicle with an attitude, which matters among the images of several rotors and to a fountain:
+    /// all rotors are then at their real places. The two above are of a level vehicle that heads along x.
+    virtual SidedFactor<double> at_turned_rotor(int rotor, const dynamics::LaneVector<double>& hub_m,
+                                                const dynamics::LaneRotation<double>& /*attitude*/) {
+        return at_rotor(rotor, hub_m);
+    }
+    virtual SidedFactor<double> at_turned_body(const dynamics::LaneVector<double>& center_m,
+                                               const dynamics::LaneRotation<double>& /*attitude*/) {
+        return at_body(center_m);
+    }
     /// Level vector towards the nearest wall, of length 1 where a rotor touches it and less with distance.
     virtual dynamics::LaneVector<double> wall_nearness(const dynamics::LaneVector<double>& /*center_m*/) {
         return {0, 0, 0};
@@ -46,31 +57,40 @@ class NoEffectInSpace final : public SpaceEffect {
     }
 };
 
+struct SpaceRotorPlaces;
+
 /// The effects of a scene on a robot's rotors, evaluated directly. It remembers what it was asked lately: a step and
 /// its two halves begin at the same place, and so does the row of a log.
 class DOWNWASH_EXPORT DirectSpaceEffect final : public SpaceEffect {
  public:
-    /// @throws InputError if a setting is out of range, or a model is one of several rotors, which depends on their
-    /// heading
+    /// @throws InputError if a setting is out of range
     DirectSpaceEffect(const std::shared_ptr<const Scene>& scene, const AeroSettings& aero, const SpaceRobot& robot);
     ~DirectSpaceEffect() override;
 
     SidedFactor<double> at_rotor(int rotor, const dynamics::LaneVector<double>& hub_m) override;
+    SidedFactor<double> at_body(const dynamics::LaneVector<double>& center_m) override;
+    SidedFactor<double> at_turned_rotor(int rotor, const dynamics::LaneVector<double>& hub_m,
+                                        const dynamics::LaneRotation<double>& attitude) override;
+    SidedFactor<double> at_turned_body(const dynamics::LaneVector<double>& center_m,
+                                       const dynamics::LaneRotation<double>& attitude) override;
     dynamics::LaneVector<double> wall_nearness(const dynamics::LaneVector<double>& center_m) override;
     bool is_flyable(int rotor, const dynamics::LaneVector<double>& hub_m) override;
 
  private:
     struct Asked {
+        int rotor = -1;  ///< 0 for all where their attitude does not matter
         dynamics::LaneVector<double> hub_m{};
+        dynamics::LaneRotation<double> attitude{};
         SidedFactor<double> factor{1, 1};
-        bool is_known = false;
     };
-    static constexpr std::size_t places = 128;  ///< a power of two
+    static constexpr std::size_t memories = 128;  ///< a power of two
 
-    std::unique_ptr<const DirectEffect> rotor_;  ///< the same for all rotors
-    double wall_reach_m_ = 0;                    ///< from the centre between the hubs to the farthest one, level
-    double wall_decay_m_ = 0;                    ///< 0: walls do nothing
-    std::array<Asked, places> asked_;
+    std::unique_ptr<const SpaceRotorPlaces> rotors_;
+    std::vector<std::shared_ptr<const DirectEffect>> effects_;  ///< of each rotor; one where neighbours do not matter
+    std::unique_ptr<const DirectEffect> fountain_;              ///< nullptr: there is none
+    std::unique_ptr<const DirectEffect> walls_;                 ///< nullptr: walls do nothing
+    std::array<Asked, memories> asked_;
+    std::vector<Vector3> places_m_;  ///< room for those of other rotors
 };
 
 }  // namespace simulation

@@ -106,19 +106,10 @@ LinearHover linearised(SpaceHoverLoop& loop) {
     return linear;
 }
 
-/// The loop in whose coordinate a mode shows most, by metres and radians. @param number of a state
-int loop_of_number(int number) {
-    constexpr int quaternion = 3, joints = 7;
-    if (number < quaternion) {
-        return number;  // x, y, z
-    }
-    return number < joints ? space_loops::roll + number - quaternion - 1 : space_loops::first_joint + number - joints;
-}
-
-/// Where the slowest mode of a Jacobian shows, by inverse iteration.
-/// @param coordinates so many numbers of the state are coordinates
+/// Where the slowest mode of a Jacobian shows most, by metres and radians; found by inverse iteration.
+/// @param attitude about which the vehicle turns   @param joints number of joints
 int slowest_loop(const Eigen::MatrixXd& jacobian, const SpaceHoverStability& stability, double tick_s,
-                 int coordinates) {
+                 const std::array<double, 4>& attitude, int joints) {
     using Complex = std::complex<double>;
     const Complex mode = std::polar(stability.spectral_radius * (1 + 1e-10), stability.frequency_rad_s * tick_s);
     const Eigen::PartialPivLU<Eigen::MatrixXcd> shifted(
@@ -128,26 +119,31 @@ int slowest_loop(const Eigen::MatrixXd& jacobian, const SpaceHoverStability& sta
         v = shifted.solve(v);
         v /= v.norm();
     }
-    int found = 0;
-    double largest = 0;
-    for (int i = 0; i < coordinates; ++i) {
-        constexpr int scalar = 3, last_of_quaternion = 6;  // the numbers of a small turn are half of its angles
-        const double share = i < scalar || i > last_of_quaternion ? 1 : 2;
-        const double size = i == scalar ? 0 : share * std::abs(v[i]);
-        if (size > largest) {
-            largest = size;
-            found = loop_of_number(i);
-        }
+    // A small turn about the body's axes is twice the vector part of the change, seen from the attitude.
+    const auto [w, x, y, z] = attitude;
+    const Complex scalar = v[3], a = v[4], b = v[5], c = v[6];
+    const Complex turn[] = {w * a - x * scalar - (y * c - z * b), w * b - y * scalar - (z * a - x * c),
+                            w * c - z * scalar - (x * b - y * a)};
+    std::vector<double> sizes;  // by space_loops
+    for (int i = 0; i < 3; ++i) {
+        sizes.push_back(std::abs(v[i]));
     }
-    return found;
+    for (const Complex& half : turn) {
+        sizes.push_back(2 * std::abs(half));
+    }
+    for (int i = 0; i < joints; ++i) {
+        sizes.push_back(std::abs(v[7 + i]));
+    }
+    return static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
 }
 
-SpaceHoverStability stability_of(SpaceHoverLoop& loop, const LinearHover& linear, int joints) {
+SpaceHoverStability stability_of(SpaceHoverLoop& loop, const LinearHover& linear, const SpaceHoverTrim& trim,
+                                 int joints) {
     SpaceHoverStability stability;
     const Eigen::MatrixXd jacobian = linear.jacobian();
     simulation::find_modes(jacobian, loop.tick_s(), stability);
     if (std::isfinite(stability.spectral_radius)) {
-        stability.slowest_loop = slowest_loop(jacobian, stability, loop.tick_s(), 7 + joints);
+        stability.slowest_loop = slowest_loop(jacobian, stability, loop.tick_s(), trim.motion.attitude, joints);
     }
     const simulation::HoverSlopes slopes = loop.slopes();
     stability.force_slope_n_m = slopes.force_n_m;
@@ -227,7 +223,7 @@ SpaceHoverAnalysis SpaceHover::at(const SpacePoint& place, simulation::SpaceEffe
     if (analysis.trim.limit != HoldLimit::none) {
         return analysis;
     }
-    analysis.stability = stability_of(*loop, linearised(*loop), robot.joints());
+    analysis.stability = stability_of(*loop, linearised(*loop), analysis.trim, robot.joints());
     if (!(analysis.stability.spectral_radius < 1 - simulation::radius_slack)) {
         analysis.verdict = HoldVerdict::unstable;
         return analysis;
@@ -249,7 +245,7 @@ SpaceLoopMargins space_loop_margins(const SpaceRobot& robot, const std::vector<d
         why = name_of(trim.limit);
     } else {
         const LinearHover linear = linearised(*loop);
-        margins.stability = stability_of(*loop, linear, robot.joints());
+        margins.stability = stability_of(*loop, linear, trim, robot.joints());
         if (margins.stability.spectral_radius < 1 - simulation::radius_slack) {
             for (Eigen::Index i = 0; i < linear.c.rows(); ++i) {
                 margins.loops.push_back(simulation::margins_of(linear.loop(i), loop->tick_s()));

@@ -46,7 +46,8 @@ struct SpaceHoverStability {
     double growth_rate_1_s = 0;
     double frequency_rad_s = 0;
     int growing_modes = 0;
-    /// Where the slowest decay, or fastest growth, shows most: one of space_loops, by metres and radians.
+    /// Where the slowest decay, or fastest growth, shows most: one of space_loops, by metres along the world's x, y and
+    /// z, and radians about the body's axes and of the joints.
     int slowest_loop = 0;
 
     double force_slope_n_m = 0;     ///< dF/dz at the trim commands; positive pulls away from the height that is held

@@ -70,14 +70,20 @@ class SpaceHoverLoopOf final : public SpaceHoverLoop {
             x.push_back(dot(e.joint_push_kg_m[i], up));
         }
         bool is_found = true;
-        double leaned[2];
-        do {  // K is linear about a pose; a vehicle that leans has its rotors elsewhere
-            leaned[0] = x[0];
-            leaned[1] = x[1];
+        constexpr int most_rounds = 20;  // K may have a kink beside the vehicle
+        for (int round = 0; round < most_rounds && is_found; ++round) {
+            // K is linear about a pose; a vehicle that leans has its rotors elsewhere.
+            const double leaned[2] = {x[0], x[1]};
             lean(x[0], x[1]);
             take_tangents();
             is_found = find_root([&](const auto& tried, auto& rates) { accelerations_at(tried, rates); }, x);
-        } while (is_found && std::hypot(x[0] - leaned[0], x[1] - leaned[1]) > 1e-6 && std::hypot(x[0], x[1]) < 1);
+            if (std::hypot(x[0] - leaned[0], x[1] - leaned[1]) < 1e-6) {
+                break;
+            }
+        }
+        if (!is_found) {
+            x[0] = x[1] = 0;
+        }
         lean(x[0], x[1]);
         command_at(x);
         SpaceHoverTrim trim;

@@ -36,7 +36,8 @@ SpaceAero space_aero(const AeroSettings& aero, double rotor_radius_m) {
     if (!aero.enabled) {
         return {};
     }
-    return {aero.map ? TiltLoss{} : aero.tilt_loss, aero.wall.force, aero.wall.moment * rotor_radius_m};
+    return {aero.map ? TiltLoss{} : aero.tilt_loss, aero.wall.force, aero.wall.moment * rotor_radius_m,
+            !aero.map && aero.ground.model == EffectModel::multirotor_body};
 }
 
 void require_built_joints(const SpaceRobot& robot) {

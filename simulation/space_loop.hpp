@@ -61,6 +61,8 @@ struct SpaceAero {
     TiltLoss tilt_loss;
     double wall_force = 0;     ///< see WallEffect
     double wall_moment_m = 0;  ///< moment over thrust
+    /// Whether air between the rotors that comes back from the ground pushes the body (docs/model.md 4.3).
+    bool has_fountain = false;
 };
 
 /// That of settings: nothing where effects are disabled.

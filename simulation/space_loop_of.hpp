@@ -30,6 +30,7 @@ SpaceTickModel<n> make_space_tick_model(const SpaceRobot& robot, const SpaceAero
         make_space_law_model<n>(robot.plant, robot.min_thrust_n, robot.max_thrust_n, max_joint_torque_nm),
         robot.controller.law, 1 / robot.controller.rate_hz, aero.tilt_loss,
         space_slipstreams_of(robot.plant, robot.rotor_radius_m)};
+    model.nominal.plant.has_fountain = aero.has_fountain;
     model.nominal.plant.has_walls = aero.wall_force != 0 || aero.wall_moment_m != 0;
     model.nominal.plant.wall_force = aero.wall_force;
     model.nominal.plant.wall_moment_m = aero.wall_moment_m;
@@ -137,9 +138,10 @@ class SpaceLoopOf final : public SpaceLoop {
         const dynamics::LaneRotation<double> attitude = dynamics::rotation_of(now.q + 3);
         const WorldSpace<double, SpaceEffect> around(world_.numbers, world_.numbers.wind_m_s, effect_, model_.tilt_loss,
                                                      model_.slipstreams);
+        const auto& here = dynamics::at_attitude<double>(around, attitude);
         for (int i = 0; i < nominal.rotor_count; ++i) {
             row.rotor_lag_n[i] = now.thrust_n[i];
-            row.rotor_factor[i] = around.thrust_ratio(i, hub(attitude, i), attitude * nominal.rotor[i].axis);
+            row.rotor_factor[i] = here.thrust_ratio(i, hub(attitude, i), attitude * nominal.rotor[i].axis);
         }
         dynamics::LaneVector<double> tip{};
         if constexpr (n > 0) {

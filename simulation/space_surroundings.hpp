@@ -22,6 +22,15 @@ concept SpaceField = requires(F& field, int rotor, const dynamics::LaneVector<T>
     { field.wall_nearness(at_m) } -> std::same_as<dynamics::LaneVector<T>>;
 };
 
+/// A SpaceField that knows what the attitude of the vehicle changes, as among the images of several rotors:
+/// at_rotor() and at_body() of such a field are of a level vehicle that heads along x.
+template <class F, class T>
+concept TurningSpaceField = SpaceField<F, T> &&
+    requires(F& field, int rotor, const dynamics::LaneVector<T>& at_m, const dynamics::LaneRotation<T>& attitude) {
+    { field.at_turned_rotor(rotor, at_m, attitude) } -> std::same_as<SidedFactor<T>>;
+    { field.at_turned_body(at_m, attitude) } -> std::same_as<SidedFactor<T>>;
+};
+
 /// No surface effect anywhere.
 struct NoSpaceEffect {
     template <class T>
@@ -58,6 +67,27 @@ class NominalSpace : public dynamics::CalmSpace {
     }
     T body_ratio(const dynamics::LaneVector<T>& center_m, const dynamics::LaneVector<T>& axis) const {
         return tilted_in_space(field_.at_body(center_m), tilt_loss_, axis).all;
+    }
+    /// See dynamics::TurningSurroundings.
+    class AtAttitude {
+     public:
+        AtAttitude(const NominalSpace& around, const dynamics::LaneRotation<T>& attitude)
+            : around_(around), attitude_(attitude) {}
+        T thrust_ratio(int rotor, const dynamics::LaneVector<T>& hub_m, const dynamics::LaneVector<T>& axis) const {
+            return tilted_in_space(around_.field_.at_turned_rotor(rotor, hub_m, attitude_), around_.tilt_loss_, axis)
+                .all;
+        }
+        T body_ratio(const dynamics::LaneVector<T>& center_m, const dynamics::LaneVector<T>& axis) const {
+            return tilted_in_space(around_.field_.at_turned_body(center_m, attitude_), around_.tilt_loss_, axis).all;
+        }
+
+     private:
+        const NominalSpace& around_;
+        dynamics::LaneRotation<T> attitude_;
+    };
+    [[nodiscard]] AtAttitude at_attitude(const dynamics::LaneRotation<T>& attitude) const requires
+        TurningSpaceField<Field, T> {
+        return {*this, attitude};
     }
     /// Walls are near whatever the tilt.
     dynamics::LaneVector<T> wall_nearness(const dynamics::LaneVector<T>& center_m) const {
@@ -97,6 +127,35 @@ class WorldSpace : public dynamics::CalmSpace {
     T thrust_scale(int rotor) const { return world_.rotor_thrust_scale[rotor]; }
     T body_ratio(const dynamics::LaneVector<T>& center_m, const dynamics::LaneVector<T>& axis) const {
         return in_world(field_.at_body(nominal_place(world_, center_m)), axis);
+    }
+    /// See dynamics::TurningSurroundings.
+    class AtAttitude {
+     public:
+        AtAttitude(const WorldSpace& around, const dynamics::LaneRotation<T>& attitude)
+            : around_(around),
+              among_obstacles_{turned(attitude.first), turned(attitude.second), turned(attitude.third)} {}
+        T thrust_ratio(int rotor, const dynamics::LaneVector<T>& hub_m, const dynamics::LaneVector<T>& axis) const {
+            return around_.in_world(
+                around_.field_.at_turned_rotor(rotor, nominal_place(around_.world_, hub_m), among_obstacles_), axis);
+        }
+        T body_ratio(const dynamics::LaneVector<T>& center_m, const dynamics::LaneVector<T>& axis) const {
+            return around_.in_world(
+                around_.field_.at_turned_body(nominal_place(around_.world_, center_m), among_obstacles_), axis);
+        }
+
+     private:
+        [[nodiscard]] dynamics::LaneVector<T> turned(const dynamics::LaneVector<T>& v) const {
+            const SpaceWorldDifferences<T>& world = around_.world_;
+            return {world.scene_cosine * v.x + world.scene_sine * v.y,
+                    world.scene_cosine * v.y - world.scene_sine * v.x, v.z};
+        }
+
+        const WorldSpace& around_;
+        dynamics::LaneRotation<T> among_obstacles_;  ///< as obstacles in their nominal places see the vehicle
+    };
+    [[nodiscard]] AtAttitude at_attitude(const dynamics::LaneRotation<T>& attitude) const requires
+        TurningSpaceField<Field, T> {
+        return {*this, attitude};
     }
     /// Worlds move and turn walls, and change nothing else of them.
     dynamics::LaneVector<T> wall_nearness(const dynamics::LaneVector<T>& center_m) const {

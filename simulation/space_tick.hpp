@@ -21,7 +21,8 @@ class SeenRatios {
         : model_(model), attitude_(dynamics::rotation_of(seen.q + 3)), around_(around) {}
 
     T ratio(int rotor, const dynamics::LaneVector<T>& hub_m) const {
-        return around_.thrust_ratio(rotor, hub_m, attitude_ * dynamics::spread<T>(model_.rotor[rotor].axis));
+        return dynamics::at_attitude<T>(around_, attitude_)
+            .thrust_ratio(rotor, hub_m, attitude_ * dynamics::spread<T>(model_.rotor[rotor].axis));
     }
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -7,6 +8,12 @@
 #include "downwash/effects/effect_models.hpp"
 
 namespace downwash {
+
+/// K where surfaces take this share of a rotor's induced velocity: from 1 to max_factor; the latter from a share of 1
+/// on.
+[[nodiscard]] inline double factor_with_loss(double share, double max_factor) noexcept {
+    return share < 1 ? std::clamp(1 / (1 - share), 1.0, max_factor) : max_factor;
+}
 
 /// K over zeta = z/R of one wide flat surface, clamped as it is used. Immutable and safe to share.
 class DOWNWASH_EXPORT EffectCurve {
@@ -54,6 +61,8 @@ class DOWNWASH_EXPORT EffectCurve {
     [[nodiscard]] const SurfaceEffect& effect() const noexcept { return effect_; }
     [[nodiscard]] const RotorNeighbours& neighbours() const noexcept { return neighbours_; }
     [[nodiscard]] bool is_fountain() const noexcept { return kind_ == Kind::fountain; }
+    /// Of image(): the distance; else 0.
+    [[nodiscard]] double image_distance_radii() const noexcept { return image_distance_radii_; }
 
  private:
     enum class Kind : std::uint8_t { rotor, fountain, image };

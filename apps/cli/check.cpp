@@ -25,8 +25,11 @@
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
+#include "downwash/problems/space_problem_writer.hpp"
 #include "downwash/report/problem_figure.hpp"
 #include "downwash/report/problem_page.hpp"
+#include "downwash/report/space_page.hpp"
+#include "downwash/report/space_problem_figure.hpp"
 #include "downwash/results/input_document.hpp"
 #include "downwash/scene/scene.hpp"
 
@@ -223,11 +226,6 @@ void require_drawable_request(const CheckArguments& given) {
         throw UsageError("{} shows a problem, and {} is a {} file: expected the file of a problem", option,
                          given.problems.front(), kind);
     }
-    if (is_space_problem_file(given.problems.front())) {
-        throw UsageError(
-            "{} shows problems in a vertical plane, and {} is one in space, as environment.bounds.y_m says", option,
-            given.problems.front());
-    }
     if (given.picture) {
         static_cast<void>(picture_format("--picture", *given.picture));
         require_writable_result(*given.picture, "--picture");
@@ -241,24 +239,58 @@ void require_drawable_request(const CheckArguments& given) {
     }
 }
 
-/// Draws the problem before it is planned; with errors the picture only. Both files are made before one is written.
-void draw_problem(const CheckArguments& given, const Findings& found) {
+/// What is drawn of a problem before it is planned.
+struct ProblemDrawings {
+    std::string picture, page;  ///< empty: not asked for, or not possible
+};
+
+ProblemDrawings drawings_of(const CheckArguments& given, const Findings& found, const PictureSettings& settings) {
     const ProblemReading& read = *found.problem;
     const Problem& problem = read.problem;
-    std::string picture, page;
+    ProblemDrawings made;
     if (given.picture) {
-        PictureSettings settings;
-        settings.format = picture_format("--picture", *given.picture);
-        settings.threads = default_threads();
-        picture = draw(problem_figure(problem, *read.model), settings);
+        made.picture = draw(problem_figure(problem, *read.model), settings);
     }
     if (given.page && read.errors.empty()) {
         const fs::path folder = fs::absolute(*given.page).parent_path();
         const ProblemReference reference{
             problem.name,   given.problems.front(), problem_sha256(problem),
             found.warnings, problem.axes(),         input_facts(problem, read.model->scene())};
-        page = problem_page(problem, reference, effective_yaml(problem, folder), *read.model, default_threads());
+        made.page = problem_page(problem, reference, effective_yaml(problem, folder), *read.model, settings.threads);
     }
+    return made;
+}
+
+/// The same in space.
+ProblemDrawings space_drawings_of(const CheckArguments& given, const Findings& found, const PictureSettings& settings) {
+    const SpaceProblem& problem = *found.space_problem;
+    ProblemDrawings made;
+    if (given.picture) {
+        made.picture = draw(space_problem_figure(problem, Scene(problem.obstacles)), settings);
+    }
+    if (given.page) {
+        Json warnings = Json::array();
+        for (const LocatedError& warning : found.warnings) {
+            warnings.push_back(json_of(warning));
+        }
+        SpaceRun run;
+        run.problem_text = effective_yaml(problem, fs::absolute(*given.page).parent_path());
+        run.warnings = warnings.dump();
+        made.page = space_page(problem, run);
+    }
+    return made;
+}
+
+/// Draws the problem before it is planned; one in a plane that has errors as a picture only. Both files are made before
+/// one is written.
+void draw_problem(const CheckArguments& given, const Findings& found) {
+    PictureSettings settings;
+    settings.threads = default_threads();
+    if (given.picture) {
+        settings.format = picture_format("--picture", *given.picture);
+    }
+    const ProblemDrawings made =
+        found.space_problem ? space_drawings_of(given, found, settings) : drawings_of(given, found, settings);
     const auto write = [&given](const std::optional<std::string>& file, const std::string& content,
                                 const char* option) {
         if (file && !content.empty()) {
@@ -268,8 +300,8 @@ void draw_problem(const CheckArguments& given, const Findings& found) {
             }
         }
     };
-    write(given.picture, picture, "--picture");
-    write(given.page, page, "--page");
+    write(given.picture, made.picture, "--picture");
+    write(given.page, made.page, "--page");
 }
 
 ExitCode run(const CheckArguments& given) {
@@ -307,7 +339,7 @@ ExitCode run(const CheckArguments& given) {
             fmt::print("{}: {}{}\n{}", path, found.errors.empty() ? "ok" : counted(found.errors.size(), "error"),
                        found.warnings.empty() ? "" : ", " + counted(found.warnings.size(), "warning"), lines);
         }
-        if (given.draws() && found.problem && found.problem->model != nullptr) {
+        if (given.draws() && (found.space_problem || (found.problem && found.problem->model != nullptr))) {
             draw_problem(given, found);
         }
     }
@@ -340,10 +372,11 @@ void add_check(Command program, Action& action) {
                            "print the JSON Schema of a kind of file instead, for editors that complete and check YAML");
     schema.one_of({file_kind_names.begin(), file_kind_names.end()});
     command.add_option("--picture FILE", given.picture,
-                       "draw the problem in the plane of motion: scene, bounds, goals, and the robot at its start; a "
-                       "picture, .svg, .png or .pdf");
+                       "draw the problem in the plane of motion, or in space in three views: scene, bounds, goals, and "
+                       "the robot at its start; a picture, .svg, .png or .pdf");
     command.add_option("--page FILE", given.page,
-                       "write the same as a page, .html, with the scene in the plane and in three dimensions");
+                       "write the same as a page, .html, with the scene in three dimensions and, if it has one, in the "
+                       "plane of motion");
     add_json(command, given.as_json, "the errors and warnings, and what robots, meshes, octrees and tables became");
 }
 

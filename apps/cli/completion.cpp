@@ -104,7 +104,7 @@ std::string fish_words(const std::string& offered) {
     }
     std::string endings = offered;
     std::erase(endings, '@');
-    return "-k -a " + in_fish_quotes("(__fish_complete_suffix " + endings + ")");
+    return "-f -k -a " + in_fish_quotes("(__fish_complete_suffix " + endings + ")");
 }
 
 std::string fish_option(const Option& option) {

@@ -1,10 +1,12 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/execute_arguments.hpp"
 #include "downwash/cli/interruption.hpp"
@@ -29,11 +31,31 @@ SpaceProblem as_planned(SpaceProblem problem, const SpaceSolution& solution) {
     return problem;
 }
 
+std::string goal_rows(const SpaceFlight& flight) {
+    std::string text;
+    const auto met = std::ranges::count_if(flight.goals, &SpaceGoalVisit::is_met);
+    if (flight.goals.size() > 1) {
+        text += table_row("goals", fmt::format("{} of {} met", met, flight.goals.size()));
+    }
+    for (std::size_t i = 0; i < flight.goals.size(); ++i) {
+        const SpaceGoalVisit& visit = flight.goals[i];
+        if (!visit.is_met) {
+            text += table_row(
+                "", fmt::format("goal {} missed: error {}, {:.1f} deg{}", i + 1, millimetres(visit.error_m),
+                                visit.angle_rad * degrees_per_radian, visit.is_hidden ? ", the target is hidden" : ""));
+        }
+        if (visit.touch) {
+            text += table_row(i == 0 ? "contact" : "",
+                              fmt::format("{}: {:.2f} N, off by {:.2f} N at most", name_of(visit.touch->end),
+                                          visit.touch->force_n, visit.touch->force_error_n));
+        }
+    }
+    return text;
+}
+
 std::string summary_of(const SpaceSolution& solution, const std::filesystem::path& folder) {
     const SpaceFlight& flight = *solution.execution;
-    std::string text = verdict_on_outcome(flight.outcome, solution.aero,
-                                          "comes to its end and hovers there. Goals in space are not judged yet.") +
-                       "\n\n";
+    std::string text = verdict_on_outcome(flight.outcome, solution.aero, "reaches the goal and hovers there.") + "\n\n";
     text += table_row("status", std::string(name_of(solution.status)));
     if (solution.execution_world) {
         text += table_row(
@@ -48,6 +70,8 @@ std::string summary_of(const SpaceSolution& solution, const std::filesystem::pat
     }
     text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
     text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
+    text += table_row("goal error", millimetres(worst_goal_error_m(flight)));
+    text += goal_rows(flight);
     text += table_row("tracking error", millimetres(flight.max_tracking_error_m));
     text += table_row("saturation", fmt::format("{:.3f}", flight.max_saturation));
     text += table_row("min. clearance",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -197,15 +198,16 @@ ExitCode run(const ExplainArguments& given) {
         given.kind, excerpt(given.key), did_you_mean(wanted, names));
 }
 
-/// Of problem files, for shells: without the brackets of lists, which these would read as patterns.
-std::vector<std::string_view> paths_of_keys() {
-    std::vector<std::string_view> paths;
+/// Paths and names of the keys of problem files, for shells: without the brackets of lists, which these would read as
+/// patterns.
+std::set<std::string_view> words_of_keys() {
+    std::set<std::string_view> words;
     for (const KeyReference& known : key_reference(FileKind::problem)) {
         if (known.info.path.find('[') == std::string::npos) {
-            paths.push_back(known.info.path);
+            words.insert({known.info.path, last_name(known.info.path)});
         }
     }
-    return paths;
+    return words;
 }
 
 }  // namespace
@@ -218,7 +220,7 @@ void add_explain(Command program, Action& action) {
                     "a key (safety_margin_m), a path of keys (planner.safety_margin_m), or a word (margin) of keys or "
                     "their descriptions")
         .required()
-        .offers(paths_of_keys());
+        .offers(words_of_keys());
     Option option = command.add_option(
         "--of", given.kind,
         "kind of file; default problem, with its robot; what flies in space is of space-problem and space-robot");

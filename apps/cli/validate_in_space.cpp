@@ -60,6 +60,7 @@ judge::JudgedFlight figures_of(const judge::SpaceJudgedFlight& flight) {
     figures.energy_j = flight.energy_j;
     figures.duration_s = flight.duration_s;
     figures.max_tracking_error_m = flight.max_tracking_error_m;
+    figures.goal_error_m = judge::worst_goal_error_m(flight);
     return figures;
 }
 
@@ -83,7 +84,6 @@ ExitCode validate_in_space(const ValidateArguments& given) {
 
     const judge::SpacePlanJudge judge(problem);
     Validation validation;
-    validation.judges_goals = false;
     validation.world = given.world;
     const judge::SpaceJudgedFlight flight = judge.fly(claims.plan, true, world_of(problem, seed, given.world));
     validation.flight = figures_of(flight);

@@ -67,8 +67,7 @@ std::string verdict_of(const Validation& validation) {
     std::string text;
     switch (validation.flight.outcome) {
         case judge::Outcome::ok:
-            text = validation.judges_goals ? "The flight reaches the goal and hovers there"
-                                           : "The flight comes to its end and hovers there";
+            text = "The flight reaches the goal and hovers there";
             break;
         case judge::Outcome::collision:
             text = validation.flight.is_lateral_collision ? "The flight ends in a collision beside its plane"
@@ -150,7 +149,7 @@ Json json_of(const Validation& validation) {
     document["min_clearance_m"] = finite(flight.min_clearance_m);
     document["energy_j"] = finite(flight.energy_j);
     document["duration_s"] = flight.duration_s;
-    document["goal_error_m"] = validation.judges_goals ? finite(flight.goal_error_m) : Json();
+    document["goal_error_m"] = finite(flight.goal_error_m);
     Json& disagreements = document["disagreements"] = Json::array();
     for (const judge::Disagreement& each : validation.disagreements) {
         disagreements.push_back({{"what", each.what}, {"file", json_of(each.file)}, {"judge", json_of(each.judge)}});
@@ -170,8 +169,7 @@ std::string text_of(const Validation& validation, const std::string& fly_one) {
     text += table_row("flight", std::string(name_of(flight.outcome)));
     text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
     text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
-    text += table_row("goal error",
-                      validation.judges_goals ? metres(flight.goal_error_m) : "goals in space are not judged yet");
+    text += table_row("goal error", metres(flight.goal_error_m));
     text += table_row("min. clearance", metres(flight.min_clearance_m));
     if (!validation.has_flight_claims) {
         text += table_row("file", "says nothing about a flight; only its plan was checked");

@@ -14,7 +14,6 @@ namespace downwash::cli {
 /// What `validate` finds.
 struct Validation {
     judge::JudgedFlight flight;
-    bool judges_goals = true;            ///< false: the flight may end anywhere, and has no goal error
     bool is_self_collision = false;      ///< of a collision: the robot touched itself
     std::optional<std::uint64_t> world;  ///< world of that flight; empty: the nominal one
     bool has_flight_claims = false;      ///< the file says something about a flight

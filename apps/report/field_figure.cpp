@@ -107,20 +107,6 @@ void add_arrows(GnuplotScript& script, const FigureLines& lines, const Bounds& e
     }
 }
 
-std::string_view dash_of(LineDash dash) {
-    switch (dash) {
-        case LineDash::solid:
-            return "";
-        case LineDash::dashed:
-            return " dashtype (16,9)";
-        case LineDash::dotted:
-            return " dashtype (3,5)";
-        case LineDash::dash_dotted:
-            return " dashtype (24,6,3,6)";
-    }
-    return "";
-}
-
 void add_marks(Plot& plot, const FieldFigure& figure) {
     for (std::size_t i = 0; i < figure.lines.size(); ++i) {
         const FigureLines& lines = figure.lines[i];

@@ -74,4 +74,18 @@ FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t
     return samples;
 }
 
+std::string_view dash_of(LineDash dash) {
+    switch (dash) {
+        case LineDash::solid:
+            return "";
+        case LineDash::dashed:
+            return " dashtype (16,9)";
+        case LineDash::dotted:
+            return " dashtype (3,5)";
+        case LineDash::dash_dotted:
+            return " dashtype (24,6,3,6)";
+    }
+    return "";
+}
+
 }  // namespace downwash

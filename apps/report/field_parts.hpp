@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "downwash/report/field.hpp"
@@ -42,5 +43,8 @@ struct FieldSamples {
 /// In the middles of columns x rows cells of the extent, or in the corners between them.
 [[nodiscard]] FieldSamples sampled(const FieldFigure& figure, std::size_t columns, std::size_t rows, bool at_corners,
                                    int threads);
+
+/// The dash of lines as after `with lines`; empty for solid ones.
+[[nodiscard]] std::string_view dash_of(LineDash dash);
 
 }  // namespace downwash

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -19,6 +20,7 @@ namespace downwash {
 namespace {
 
 constexpr std::size_t sides = 96;  // of a circle
+constexpr double beside_everything_m = 1e7;
 
 /// Sine and cosine of the corners of a circle.
 const std::array<lane::SinCos, sides>& unit_circle() {
@@ -186,6 +188,15 @@ std::vector<Ring> parts_beside(const std::vector<Vector3>& vertices_m,
     return rings;
 }
 
+std::vector<Vector3> vertices_of(const Mesh& mesh, const ObstacleFrame& frame) {
+    std::vector<Vector3> vertices_m;
+    vertices_m.reserve(mesh.surface->vertices_m.size());
+    for (const Vector3& own : mesh.surface->vertices_m) {
+        vertices_m.push_back(frame(local_m(mesh, own)));
+    }
+    return vertices_m;
+}
+
 /// Sets the parts of an outline that depend on the kind of shape.
 class OutlineOf {
  public:
@@ -202,11 +213,7 @@ class OutlineOf {
     }
 
     void operator()(const Mesh& mesh) const {
-        std::vector<Vector3> vertices_m;
-        vertices_m.reserve(mesh.surface->vertices_m.size());
-        for (const Vector3& own : mesh.surface->vertices_m) {
-            vertices_m.push_back(frame_(local_m(mesh, own)));
-        }
+        const std::vector<Vector3> vertices_m = vertices_of(mesh, frame_);
         MeshSection cut = mesh_section(vertices_m, mesh.surface->triangles);
         outline_.is_cut = !cut.rings.empty() || !cut.lines.empty();
         outline_.rings = std::move(cut.rings);
@@ -263,6 +270,27 @@ class OutlineOf {
     ObstacleOutline& outline_;
 };
 
+/// First `b`, then `a`.
+Matrix3 product(const Matrix3& a, const Matrix3& b) {
+    Matrix3 both;
+    for (std::size_t i = 0; i < 3; ++i) {
+        both[i] = a[i][0] * b[0] + a[i][1] * b[1] + a[i][2] * b[2];
+    }
+    return both;
+}
+
+/// A frame far behind the plane of the picture, which then cuts nothing.
+ObstacleFrame seen_frame(const Obstacle& obstacle, const Matrix3& rotation, const Vector3& origin_m,
+                         const Matrix3& view) {
+    static const PlaneOfMotion plane;
+    ObstacleFrame frame(obstacle, plane, beside_everything_m);
+    frame.center_m = view * (origin_m + rotation * obstacle.center_world_m);
+    frame.rotation = product(view, product(rotation, frame.rotation));
+    return frame;
+}
+
+constexpr Matrix3 no_rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+
 }  // namespace
 
 std::vector<ObstacleOutline> obstacle_outlines(const Scene& scene, const PlaneOfMotion& plane, double lateral_m) {
@@ -277,8 +305,50 @@ std::vector<ObstacleOutline> obstacle_outlines(const Scene& scene, const PlaneOf
 }
 
 std::vector<ObstacleOutline> projected_outlines(const Scene& scene, const PlaneOfMotion& plane) {
-    constexpr double beside_everything_m = 1e7;
     return obstacle_outlines(scene, plane, beside_everything_m);
+}
+
+std::vector<ObstacleOutline> seen_outlines(const Scene& scene, const Matrix3& view) {
+    std::vector<ObstacleOutline> outlines;
+    for (const Obstacle& obstacle : scene.obstacles()) {
+        ObstacleOutline& outline = outlines.emplace_back();
+        outline.name = obstacle.name;
+        const ObstacleFrame frame = seen_frame(obstacle, no_rotation, {0, 0, 0}, view);
+        std::visit(OutlineOf(frame, outline), obstacle.shape);
+        if (const auto* mesh = std::get_if<Mesh>(&obstacle.shape)) {
+            if (std::vector<Ring> parts = parts_beside(vertices_of(*mesh, frame), mesh->surface->triangles);
+                !parts.empty()) {
+                outline.rings = std::move(parts);
+            }
+        }
+        outline.is_cut = true;  // all of it is seen
+    }
+    return outlines;
+}
+
+Ring seen_outline(const SpaceBodyShape& solid, const Matrix3& rotation, const Vector3& origin_m, const Matrix3& view) {
+    const auto ring_of = [&](const Shape& shape, const Vector3& center_m) {
+        const Obstacle obstacle{"", shape, center_m, {}};
+        ObstacleOutline outline;
+        const ObstacleFrame frame = seen_frame(obstacle, rotation, origin_m, view);
+        std::visit(OutlineOf(frame, outline), obstacle.shape);
+        return outline.rings.front();
+    };
+    if (const auto* capsule = std::get_if<Capsule>(&solid.shape)) {
+        Ring ends = ring_of(Sphere{capsule->radius_m}, solid.center_m + capsule->from_m);
+        const Ring other = ring_of(Sphere{capsule->radius_m}, solid.center_m + capsule->to_m);
+        ends.insert(ends.end(), other.begin(), other.end());
+        return convex_hull(std::move(ends));
+    }
+    return std::visit(
+        [&](const auto& shape) -> Ring {
+            if constexpr (std::is_constructible_v<Shape, decltype(shape)>) {
+                return ring_of(shape, solid.center_m);
+            } else {
+                return {};
+            }
+        },
+        solid.shape);
 }
 
 std::vector<Ring> body_outlines(const std::vector<BodyShape>& bodies) {

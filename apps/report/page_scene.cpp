@@ -12,11 +12,10 @@
 
 #include "downwash/base/parallel.hpp"
 #include "downwash/report/color_scale.hpp"
-#include "downwash/report/obstacle_frame.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 #include "downwash/report/packed_numbers.hpp"
+#include "downwash/report/page_solids.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
-#include "downwash/scene/solid_surface.hpp"
 
 namespace downwash {
 namespace {
@@ -38,77 +37,6 @@ Json rings_json(const std::vector<Ring>& rings) {
     }
     return all;
 }
-
-Vector3 direction(const ObstacleFrame& frame, const Vector3& own) {
-    return frame(own) - frame({0, 0, 0});
-}
-
-/// The triangles of a solid without a closed form, in the coordinates of the plane: x, lateral, z.
-Json triangles_json(const Obstacle& obstacle, const PlaneOfMotion& plane) {
-    const TriangleMesh surface = surface_of(obstacle);
-    std::vector<float> coordinates;
-    for (const Vector3& vertex_m : surface.vertices_m) {
-        for (const double coordinate : plane.from_world(vertex_m)) {
-            coordinates.push_back(static_cast<float>(coordinate));
-        }
-    }
-    std::vector<std::int32_t> corners;
-    for (const auto& triangle : surface.triangles) {
-        for (const std::uint32_t corner : triangle) {
-            corners.push_back(static_cast<std::int32_t>(corner));
-        }
-    }
-    PackedNumbers vertices, indices;
-    vertices.add(coordinates);
-    indices.add(corners);
-    return {{"triangles", {{"vertices", vertices.text()}, {"indices", indices.text()}}}};
-}
-
-/// A page shows only the outlines of meshes and octrees with more triangles, so that it stays small.
-constexpr std::size_t max_shown_triangles = 20000;
-
-/// The kind of a shape and its solid.
-class SolidOf {
- public:
-    SolidOf(const Obstacle& obstacle, const PlaneOfMotion& plane)
-        : obstacle_(obstacle), plane_(plane), frame_(obstacle, plane, 0) {}
-
-    Json operator()(const Box& box) const {
-        return {
-            {"box",
-             {{"size_m", box.size_m},
-              {"center_m", frame_({0, 0, 0})},
-              {"axes", {direction(frame_, {1, 0, 0}), direction(frame_, {0, 1, 0}), direction(frame_, {0, 0, 1})}}}}};
-    }
-    Json operator()(const Cylinder& cylinder) const {
-        const double length = std::hypot(cylinder.axis[0], cylinder.axis[1], cylinder.axis[2]);
-        const Vector3 unit{cylinder.axis[0] / length, cylinder.axis[1] / length, cylinder.axis[2] / length};
-        return {{"cylinder",
-                 {{"radius_m", cylinder.radius_m},
-                  {"length_m", cylinder.length_m},
-                  {"center_m", frame_({0, 0, 0})},
-                  {"axis", direction(frame_, unit)}}}};
-    }
-    Json operator()(const Sphere& sphere) const {
-        return {{"sphere", {{"radius_m", sphere.radius_m}, {"center_m", frame_({0, 0, 0})}}}};
-    }
-    Json operator()(const Mesh& mesh) const {
-        return mesh.surface->triangles.size() > max_shown_triangles ? Json() : triangles_json(obstacle_, plane_);
-    }
-    Json operator()(const Octomap& octomap) const {
-        constexpr std::size_t triangles_of_box = 12;
-        return solid_box_count(octomap) * triangles_of_box > max_shown_triangles ? Json()
-                                                                                 : triangles_json(obstacle_, plane_);
-    }
-
- private:
-    const Obstacle& obstacle_;
-    const PlaneOfMotion& plane_;
-    ObstacleFrame frame_;
-};
-
-constexpr const char* kinds[] = {"box", "cylinder", "sphere", "mesh", "octree"};
-static_assert(std::size(kinds) == std::variant_size_v<Shape>);
 
 Json optional_json(const std::optional<double>& value) {
     return value ? Json(*value) : Json();
@@ -143,11 +71,11 @@ Json scene_json(const Problem& problem, const Scene& scene) {
     for (std::size_t i = 0; i < cuts.size(); ++i) {
         const Obstacle& obstacle = scene.obstacles()[i];
         obstacles.push_back({{"name", obstacle.name},
-                             {"kind", kinds[obstacle.shape.index()]},
+                             {"kind", kind_of(obstacle.shape)},
                              {"section", cuts[i].is_cut ? rings_json(cuts[i].rings) : Json::array()},
                              {"section_lines", rings_json(cuts[i].lines)},
                              {"projection", rings_json(projections[i].rings)},
-                             {"solid", std::visit(SolidOf(obstacle, problem.plane), obstacle.shape)}});
+                             {"solid", solid_json(obstacle, problem.plane)}});
     }
     const Bounds& bounds = problem.bounds;
     return {{"bounds", {{"x_m", {bounds.x_low_m, bounds.x_high_m}}, {"z_m", {bounds.z_low_m, bounds.z_high_m}}}},
@@ -161,9 +89,8 @@ Json robot_json(const Robot& robot) {
     const auto outlines = body_outlines(robot.body);
     Json shapes = Json::array();
     for (std::size_t i = 0; i < outlines.size(); ++i) {
-        const Obstacle body = as_obstacle(robot.body[i]);
         shapes.push_back(
-            {{"outline", ring_json(outlines[i])}, {"solid", std::visit(SolidOf(body, body_plane), body.shape)}});
+            {{"outline", ring_json(outlines[i])}, {"solid", solid_json(as_obstacle(robot.body[i]), body_plane)}});
     }
     const ArmParameters& arm = robot.arm;
     return {

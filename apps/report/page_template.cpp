@@ -9,6 +9,7 @@
 #include "downwash/base/embedded_file.hpp"
 
 DOWNWASH_EMBED_FILE(downwash_run_page, DOWNWASH_PAGES "/run.html");
+DOWNWASH_EMBED_FILE(downwash_space_page, DOWNWASH_PAGES "/space.html");
 DOWNWASH_EMBED_FILE(downwash_campaign_page, DOWNWASH_PAGES "/campaign.html");
 DOWNWASH_EMBED_FILE(downwash_validation_page, DOWNWASH_PAGES "/validation.html");
 #else
@@ -19,6 +20,10 @@ namespace downwash {
 
 std::string_view run_page_template() noexcept {
     return DOWNWASH_EMBEDDED_FILE(downwash_run_page);
+}
+
+std::string_view space_page_template() noexcept {
+    return DOWNWASH_EMBEDDED_FILE(downwash_space_page);
 }
 
 std::string_view campaign_page_template() noexcept {

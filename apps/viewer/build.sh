@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the pages, each an HTML file without data: DIR/run.html, campaign.html and validation.html. Usage: apps/viewer/build.sh DIR
+# Builds the pages, each an HTML file without data: DIR/run.html, space.html, campaign.html and validation.html. Usage: apps/viewer/build.sh DIR
 # Needs esbuild ($ESBUILD, or the one on the path), node-d3 and libjs-three of Debian; the same sources and packages give
 # the same bytes.
 set -euo pipefail
@@ -44,12 +44,19 @@ mkdir -p "$out"
 page campaign 'Downwash campaign' src/campaign/main.js src/campaign/page.css
 page validation 'Downwash validation' src/validation/main.js src/validation/page.css
 
-bundle src/view3d/app.js --global-name=DownwashView3d --outfile="$parts/view3d.js" \
-    --alias:three="$three/build/three.module.js" \
-    --alias:orbit-controls="$three/examples/jsm/controls/OrbitControls.js"
-{
-    echo '<script type="text/plain" id="downwash-view3d">'
-    gzip -9n <"$parts/view3d.js" | base64 -w 0
-    printf '\n</script>\n'
-} >"$parts/extra"
+# view3d SCRIPT: a bundle with three.js, packed, into $parts/extra.
+view3d() {
+    bundle "$1" --global-name=DownwashView3d --outfile="$parts/view3d.js" \
+        --alias:three="$three/build/three.module.js" \
+        --alias:orbit-controls="$three/examples/jsm/controls/OrbitControls.js"
+    {
+        echo '<script type="text/plain" id="downwash-view3d">'
+        gzip -9n <"$parts/view3d.js" | base64 -w 0
+        printf '\n</script>\n'
+    } >"$parts/extra"
+}
+
+view3d src/view3d/app.js
 page run 'Downwash run' src/main.js src/page.css
+view3d src/view3d/space_app.js
+page space 'Downwash flight in space' src/space/main.js src/space/page.css

@@ -7,11 +7,14 @@
 
 #include "../support/hard_places.hpp"
 #include "../support/scratch_folder.hpp"
+#include "../support/volume_scenes.hpp"
 #include "downwash/aeromap/map_cache.hpp"
+#include "downwash/aeromap/same_along.hpp"
 #include "downwash/aeromap/triquadratic.hpp"
 #include "downwash/aeromap/volume_map.hpp"
 #include "downwash/aeromap/volume_patches.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/parallel.hpp"
 #include "downwash/effects/effect_table.hpp"
 #include "scenes.hpp"
 
@@ -155,6 +158,86 @@ TEST_CASE("A volume is the same to the bit for any number of threads and any ord
     }
     asked.fill();
     CHECK(asked.to_bytes() == one.to_bytes());
+}
+
+TEST_CASE(
+    "A volume that was asked in part has the same bytes whatever the order and the threads, and its parts add up") {
+    test::Random random(75);
+    const auto effect = effect_in(random_obstacles(random, 2), 0.25);
+    const Block block{{-1, 1, -0.5, 0.5}, -0.5, 0.5, {}};
+    std::vector<Vector3> places;
+    for (int i = 0; i < 3000; ++i) {
+        places.push_back(block.any(random));
+    }
+    const VolumeMap forth = map_of(effect, block);
+    const VolumeMap back = map_of(effect, block);
+    const VolumeMap together = map_of(effect, block);
+    const VolumeMap first = map_of(effect, block);
+    const VolumeMap second = map_of(effect, block);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        static_cast<void>(forth.factor(places[i]));
+        static_cast<void>(back.factor(places[places.size() - 1 - i]));
+        static_cast<void>((i % 3 == 0 ? first : second).factor(places[i]));
+    }
+    run_parallel(places.size(), 4, [&](std::size_t i) { static_cast<void>(together.factor(places[i])); });
+    const std::string bytes = forth.to_bytes();
+    CHECK(back.to_bytes() == bytes);
+    CHECK(together.to_bytes() == bytes);
+    CHECK(first.to_bytes() != bytes);
+    VolumeMap both = forth.unfilled();
+    REQUIRE(both.add_bytes(first.to_bytes()));
+    REQUIRE(both.add_bytes(second.take_new_bytes()));
+    CHECK(both.to_bytes() == bytes);
+    CHECK(both.take_new_bytes().empty());
+    CHECK(both.factor(places[0]) == forth.factor(places[0]));
+}
+
+TEST_CASE("At ten thousand random flyable places of three sites a volume is within 0.01, and knows where one may fly") {
+    for (const test::VolumeSite& site : {test::girder_bay(), test::pipe_rack(), test::rough_deck(24)}) {
+        const VolumeMap map = site.map(site.effect());
+        const test::VolumeComparison found = test::compared_at_random(site, map, 10000, 76);
+        CAPTURE(site.name, found.worst, found.felt);
+        CHECK(found.worst <= 0.01);
+        CHECK(found.felt > 1000);
+        CHECK(found.misjudged == 0);
+    }
+}
+
+TEST_CASE("Along a girder one sample stands for all, and at its end none does") {
+    const test::VolumeSite bay = test::girder_bay();
+    const auto effect = bay.effect();
+    const auto around = [](const Vector3& low_m, double edge_m) {
+        return BoundingBox{low_m, {low_m[0] + edge_m, low_m[1] + edge_m, low_m[2] + edge_m}};
+    };
+    const SameAlong beside_web = same_along(*effect, {}, around({-3, 0.2, 3}, 0.1));
+    CHECK(beside_web.x);
+    CHECK_FALSE(beside_web.lateral);
+    const SameAlong middle = same_along(*effect, {}, around({-3, 1.4, 3}, 0.1));
+    CHECK((middle.x && middle.lateral));
+    const SameAlong at_frame = same_along(*effect, {}, around({-0.2, 1.4, 3}, 0.1));
+    CHECK_FALSE((at_frame.x || at_frame.lateral));
+    const SameAlong at_end = same_along(*effect, {}, around({6.9, 0.2, 3}, 0.1));
+    CHECK_FALSE((at_end.x || at_end.lateral));
+    const SameAlong turned = same_along(*effect, PlaneOfMotion({0, 0, 0}, 0.2), around({-3, 0.2, 3}, 0.1));
+    CHECK_FALSE((turned.x || turned.lateral));
+    // What it says is true: K does not change along an axis that it names, wherever that is.
+    test::Random random(77);
+    int named = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const BoundingBox hubs = around(bay.any(random), 0.1);
+        const SameAlong same = same_along(*effect, {}, hubs);
+        const auto any = [&](std::size_t axis) { return random.uniform(hubs.low_m[axis], hubs.high_m[axis]); };
+        const Vector3 at{any(0), any(1), any(2)};
+        if (same.x) {
+            CHECK(effect->factor({any(0), at[1], at[2]}) == Approx(effect->factor(at)).margin(1e-9));
+            ++named;
+        }
+        if (same.lateral) {
+            CHECK(effect->factor({at[0], any(1), at[2]}) == Approx(effect->factor(at)).margin(1e-9));
+            ++named;
+        }
+    }
+    CHECK(named > 2000);
 }
 
 TEST_CASE("In a girder bay a volume is within 0.01 by side, and knows where one may fly") {

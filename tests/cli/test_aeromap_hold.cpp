@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "program.hpp"
 
@@ -75,4 +76,48 @@ TEST_CASE("A hold query prints a table for people, and is rejected without a poi
         CAPTURE(options);
         check_rejected(work.run("aeromap hold", problem_file("bridge_inspection"), options), reason);
     }
+}
+
+TEST_CASE("A hold query in space takes places and grids, yaw and joints") {
+    const Workspace work;
+    const std::string text = "schema: downwash/problem/v1\nname: hold\nrobot: " + std::string(DOWNWASH_PROBLEMS) +
+                             "/robots/hexa370_arm3.yaml\n"
+                             "environment:\n  bounds: {x_m: [-5, 5], y_m: [-5, 5], z_m: [0.5, 7]}\n"
+                             "  obstacles:\n    - {box: {size_m: [20, 10, 1], center_m: [0, 5, 5.5]}}\n"
+                             "start: {x_m: 0, y_m: -2, z_m: 2}\ngoal:\n  configuration: {x_m: 1, y_m: 0, z_m: 2}\n";
+    write_file(work / "space.yaml", text);
+    const auto answer =
+        work.json("aeromap hold", work / "space.yaml",
+                  "--place 0 -3 2 --place 0 0.1 4.75 --place 0 3 4.94 --yaw-deg 20 --joints-deg 0 10 20");
+    CHECK(answer.at("yaw_deg").get<double>() == Approx(20));
+    CHECK(answer.at("joints_deg").size() == 3);
+    const auto& points = answer.at("points");
+    REQUIRE(points.size() == 3);
+    CHECK(points[0].at("verdict") == "stable");
+    CHECK(points[0].at("trim").at("rotor_commands_n").size() == 6);
+    CHECK(points[0].at("trim").at("reference").at("yaw_deg").get<double>() == Approx(20).epsilon(1e-6));
+    CHECK(points[0].at("stability").at("growth_rate_1_s").get<double>() < 0);
+    // Under the deck's edge the rotors on one side have less to do.
+    const auto& commands = points[1].at("trim").at("rotor_commands_n");
+    CHECK(std::abs(commands[1].get<double>() - commands[4].get<double>()) > 0.05);
+    CHECK(points[2].at("verdict") == "not_flyable");
+    CHECK(points[2].at("trim").is_null());
+
+    const auto grid = work.json("aeromap hold", work / "space.yaml", "--from 0 -0.2 4 --to 0 0.2 4.1 --step 0.1");
+    REQUIRE(grid.at("points").size() == 10);
+    CHECK(grid.at("points")[9].at("y_m").get<double>() == Approx(0.2));
+    CHECK(grid.at("points")[9].at("z_m").get<double>() == Approx(4.1));
+    CHECK_THAT(work.succeed("aeromap hold", work / "space.yaml", "--place 0 -3 2").out,
+               Contains("verdict") && Contains("stable"));
+    for (const auto& [options, reason] : {std::pair{"", "--place X Y Z"},
+                                          {"--at 0 1", "--place and --joints-deg"},
+                                          {"--from 0 0 1", "expected both"},
+                                          {"--place 0 nan 1", "finite coordinates"},
+                                          {"--from 0 0 2 --to 0 0 1", "expected no end below the other"},
+                                          {"--from -5 -5 1 --to 5 5 4 --step 0.01", "expected a larger one"},
+                                          {"--place 0 0 1 --joints-deg 1", "expected 3, one for each joint"}}) {
+        CAPTURE(options);
+        check_rejected(work.run("aeromap hold", work / "space.yaml", options), reason);
+    }
+    check_rejected(work.run("aeromap hold", problem_file("bridge_inspection"), "--place 0 0 1"), "expected --at");
 }

@@ -186,7 +186,12 @@ TEST_CASE("A problem in space is begun, checked and explained, and no plan is se
     CHECK(robots.at(0).at("hover_joints_deg").size() == 3);
 
     check_rejected(work.run("solve my_problem.yaml"), "plans are not searched for there yet");
-    check_rejected(work.run("check my_problem.yaml --page page.html"), "shows problems in a vertical plane");
+    CHECK_THAT(work.succeed("check my_problem.yaml --picture views.svg").out, Catch::EndsWith("\nviews.svg\n"));
+    CHECK_THAT(work.text("views.svg"), Contains("from above") && Contains("from the front") && Contains("girder"));
+    if (has_pages) {
+        CHECK_THAT(work.succeed("check my_problem.yaml --page page.html").out, Catch::EndsWith("\npage.html\n"));
+        CHECK_THAT(work.text("page.html"), Contains("downwash/space-report/v1"));
+    }
     CHECK_THAT(work.succeed("explain joint_m --of space-problem").out, StartsWith("robot.arm.links[].joint_m\n"));
     CHECK_THAT(work.succeed("explain torque_ratio_m").out, Contains("--of space-problem"));
     CHECK_THAT(work.succeed("check --schema space-robot").out, Contains("\"torque_ratio_m\""));

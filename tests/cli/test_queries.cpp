@@ -119,6 +119,58 @@ TEST_CASE("margins prints how far a robot's loops are from instability, as a tab
     check_rejected(work.run("margins nowhere.yaml"), "nowhere.yaml");
 }
 
+TEST_CASE("margins of a robot in space have a row for every loop and pose, and tell how fast disturbances decay") {
+    const Workspace work;
+    const std::string robot = std::string(DOWNWASH_PROBLEMS) + "/robots/hexa370_arm3.yaml";
+    const auto printed = work.json("margins", robot);
+    CHECK(printed.at("robot") == "hexa370_arm3");
+    REQUIRE(printed.at("margins").size() == 4 * 9);  // zero, aside, up and down; six loops and three joints
+    REQUIRE(printed.at("stability").size() == 4);
+    const std::string text = work.succeed("margins", robot).out;
+    for (const auto& row : printed.at("margins")) {
+        CHECK(row.at("bandwidth_rad_s").get<double>() > 0);
+        CHECK(row.at("is_enough").get<bool>() == (row.at("gain_margin_db") >= 6 && row.at("phase_margin_deg") >= 45));
+        CHECK_THAT(text, Contains(row.at("loop").get<std::string>()));
+    }
+    for (const auto& pose : printed.at("stability")) {
+        CHECK(pose.at("growth_rate_1_s").get<double>() < 0);
+        CHECK(pose.at("joints_deg").size() == 3);
+    }
+    const auto given = work.json("margins", robot, "--joints-deg 10 20 -30");
+    CHECK(given.at("margins").size() == 9);
+    CHECK(given.at("stability")[0].at("joints_deg")[2].get<double>() == Approx(-30));
+    check_rejected(work.run("margins", robot, "--joints-deg 10 20"), "expected 3, one for each joint");
+    check_rejected(work.run("margins", robot, "--joints-deg 10 20 300"), "beyond the limits of joint 3");
+    check_rejected(work.run("margins", robot, "--yaw-rad-s 3"), "--design");
+    check_rejected(work.run("margins", std::string(DOWNWASH_PROBLEMS) + "/robots/ars_lrm.yaml", "--joints-deg 10"),
+                   "vertical plane");
+}
+
+TEST_CASE("margins --design prints a controller that a robot without one can have") {
+    const Workspace work;
+    const std::string robots = std::string(DOWNWASH_PROBLEMS) + "/robots/";
+    for (const std::string name : {"hexa370_arm3", "ars_lrm"}) {
+        CAPTURE(name);
+        const std::string whole = read_file(robots + name + ".yaml");
+        const std::size_t begin = whole.find("\ncontroller:") + 1;
+        const std::size_t end = whole.find("\nuncertainty:");
+        const std::string rest = end == std::string::npos ? "" : whole.substr(end);
+        write_file(work / "bare.yaml", whole.substr(0, begin) + rest);
+        check_rejected(work.run("margins", work / "bare.yaml"), "controller is missing");
+        const std::string section = work.succeed("margins", work / "bare.yaml", "--design --height-rad-s 3").out;
+        CHECK_THAT(section, Catch::StartsWith("controller:\n") && Contains("kp: 9\n") && Contains("# "));
+        write_file(work / "full.yaml", whole.substr(0, begin) + section + rest);
+        work.succeed("margins", work / "full.yaml");
+        const auto design = work.json("margins", work / "full.yaml", "--design --height-rad-s 3");
+        CHECK(design.at("controller").at("height").at("kp") == 9);
+        CHECK(design.at("controller").at("type") == "model-inversion");
+    }
+    const auto cascade = work.json("margins", robots + "snu_f550_arm2.yaml", "--design --law px4-cascade");
+    CHECK(cascade.at("controller").at("yaw_p_1_s") == 1.25);
+    check_rejected(work.run("margins", robots + "ars_lrm.yaml", "--design --law px4-cascade"),
+                   "is for robots in space");
+}
+
 TEST_CASE("Planners are listed for people and for programs") {
     const Workspace work;
     const auto planners = work.json("planners").at("planners");

@@ -186,6 +186,7 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
         {"downwash solve only.yaml --no", "--no-cache"},
         {"downwash planners ''", "--help|--json"},
         {"downwash explain planner.sa", "planner.safety_margin_m"},
+        {"downwash explain safety", "safety_margin_m"},
     };
     std::string questions = "ask() { COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); COMPREPLY=(); ";
     questions +=
@@ -196,7 +197,7 @@ TEST_CASE("Completions offer commands, options, what options take, and files, in
         questions += std::string("ask ") + asked.words + "\n";
         expected += std::string(asked.offered) + "\n";
     }
-    questions += "mkdir -p others && cd others && touch only.yaml table.csv solution.json notes.txt\n";
+    questions += "mkdir -p ../others && cd ../others && touch only.yaml table.csv solution.json notes.txt\n";
     for (const Asked& asked : with_others) {
         questions += std::string("ask ") + asked.words + "\n";
         expected += std::string(asked.offered) + "\n";
@@ -233,16 +234,21 @@ complete -C 'downwash aeromap q'
 complete -C 'downwash solve --see'
 complete -C 'downwash solve --variant mp-arm-d'
 complete -C 'downwash completion fi'
+complete -C 'downwash solve ' | head -1
+complete -C 'downwash replan b.yaml --plan ' | head -1
 )");
-    REQUIRE(std::system(("HOME='" + work.path().string() + "' fish -N '" + (work / "script").string() + "' >'" +
-                         (work / "offered").string() + "'")
+    for (const char* file : {"a.txt", "b.yaml", "c.json"}) {
+        write_file(work.in_run(file), "");
+    }
+    REQUIRE(std::system(("cd '" + work.in_run().string() + "' && HOME='" + work.path().string() + "' fish -N '" +
+                         (work / "script").string() + "' >'" + (work / "offered").string() + "'")
                             .c_str()) == 0);
     std::istringstream lines(read_file(work / "offered"));
     std::string words;
     for (std::string line; std::getline(lines, line);) {
         words += line.substr(0, line.find('\t')) + "|";
     }
-    CHECK(words == "solve|query|--seed|mp-arm-da|fish|");
+    CHECK(words == "solve|query|--seed|mp-arm-da|fish|b.yaml|c.json|");
 }
 
 TEST_CASE("What cannot be reported or exported is rejected with a remedy") {

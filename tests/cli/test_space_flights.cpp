@@ -130,8 +130,12 @@ TEST_CASE("References in space that cannot be flown are rejected with their plac
 
 TEST_CASE("A plan in space is validated in worlds, the same on any number of threads") {
     const Workspace work;
-    write_file(work.in_run("short.yaml"), replaced(replaced(read_file(girder), "hold_s: 5", "hold_s: 1"), "../robots/",
-                                                   DOWNWASH_PROBLEMS "/robots/"));
+    std::string problem = replaced(read_file(girder), "hold_s: 5", "hold_s: 1");
+    problem = replaced(problem, "../robots/", DOWNWASH_PROBLEMS "/robots/");
+    const std::size_t goal = problem.find("  end_effector:");
+    problem.replace(goal, problem.find('\n', goal) - goal,
+                    "  configuration: {x_m: 0, y_m: -1.2, z_m: 3.1, tolerance_m: 0.3}");
+    write_file(work.in_run("short.yaml"), problem);
     write_file(work.in_run("short.json"), edited_reference(2, [](Json&) {}));
     const Words words_of_all = words("validate short.yaml --plan short.json --runs 4 --seed 2 --json --quiet");
     const Result one = work.succeed(words_of_all, "--threads 1 --out found");
@@ -168,39 +172,33 @@ TEST_CASE("Commands that cannot take a problem in space say what can be done wit
     rejected(words("replan", girder, "--plan run --after 3"), "makes this a problem in space");
     rejected(words("aeromap build", girder, "-o map.csv"), in_space);
     rejected(words("aeromap query", girder, "--at 0 0 1"), in_space);
-    rejected(words("aeromap hold", girder, "--at 0 1"), in_space);
     rejected(words("export run --format csv -o run.csv"), "this is a run in space");
     write_file(work.in_run("campaign.yaml"), "schema: downwash/campaign/v1\nproblems: [" + girder + "]\n");
     rejected(words("bench run campaign.yaml --out campaign"), "makes this a problem in space");
 }
 
-TEST_CASE("docs/space_files.md quotes what the program prints") {
+TEST_CASE("The flights of docs/space_files.md go well and print what it quotes") {
     const Workspace work;
     std::filesystem::create_directory_symlink(DOWNWASH_PROBLEMS, work.in_run("problems"));
     std::istringstream page(read_file(DOWNWASH_SPACE_PAGE));
-    std::vector<std::string> printed;
-    std::size_t commands = 0, quoted = 0, next = 0;
+    const std::string prompt = "$ downwash ";
+    std::istringstream printed;
+    std::size_t commands = 0;
     bool is_session = false;
     for (std::string line; std::getline(page, line);) {
         if (line == "```") {
             is_session = false;
-        } else if (line.starts_with("$ downwash ")) {
+        } else if (line.starts_with(prompt)) {
             is_session = true;
             ++commands;
-            std::istringstream output(work.run(line.substr(std::string("$ downwash ").size()).c_str()).out);
-            printed.clear();
-            for (std::string each; std::getline(output, each);) {
-                printed.push_back(each);
-            }
-            next = 0;
+            printed = std::istringstream(work.succeed(line.substr(prompt.size()).c_str()).out);
         } else if (is_session && !line.empty() && line != "...") {
             INFO(line);
-            const auto found = std::find(printed.begin() + static_cast<std::ptrdiff_t>(next), printed.end(), line);
-            REQUIRE(found != printed.end());
-            next = static_cast<std::size_t>(found - printed.begin()) + 1;
-            ++quoted;
+            std::string each;
+            while (std::getline(printed, each) && each != line) {
+            }
+            CHECK(each == line);
         }
     }
-    CHECK(commands >= 3);
-    CHECK(quoted >= 10);
+    CHECK(commands == 3);
 }

@@ -34,10 +34,16 @@ SpacePlan beginning() {
     return plan;
 }
 
-/// The shipped problem with a hover of a second at the end.
+/// The shipped problem with that end for a goal, and a hover of a second there.
 SpaceProblem short_problem() {
     SpaceProblem quick = problem();
-    quick.goals[0].hold_s = 1;
+    const double* end = shipped().plan.reference[1].point.position;
+    SpaceConfigurationGoal goal;
+    goal.x_m = end[0];
+    goal.y_m = end[1];
+    goal.z_m = end[2];
+    goal.tolerance_m = 0.3;
+    quick.goals = {{goal, 1, {}}};
     return quick;
 }
 
@@ -58,6 +64,7 @@ SpaceClaims claims_of(const SpaceFlight& flight) {
     said.energy_j = flight.energy_j;
     said.duration_s = flight.duration_s;
     said.cost = flight.energy_j;
+    said.goal_error_m = flight.goals.at(0).error_m;
     claims.has_cost = true;
     return claims;
 }

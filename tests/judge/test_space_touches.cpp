@@ -94,9 +94,10 @@ void check_met(const Told& told, double force_n, double place_tolerance_m) {
     CHECK(flown.is_met);
     CHECK(judged.is_met);
     CHECK(flown.touch->end == SpaceTouchEnd::met);
-    CHECK(told.flown.rows.size() == told.judged.rows.size());
+    // The last contact may be a few ticks apart: it depends on the last digits of a bounce.
+    CHECK(std::abs(told.flown.duration_s - told.judged.duration_s) < 0.05);
     CHECK(flown.touch->force_n == Approx(force_n).epsilon(0.1));
-    CHECK(judged.touch->force_n == Approx(flown.touch->force_n).epsilon(0.01));
+    CHECK(judged.touch->force_n == Approx(flown.touch->force_n).epsilon(1e-3));
     const Vector3 apart_m = flown.touch->place_m - judged.touch->place_m;
     CHECK(std::sqrt(dot(apart_m, apart_m)) < place_tolerance_m);
     CHECK(std::abs(flown.touch->slip_m - judged.touch->slip_m) < place_tolerance_m);
@@ -222,7 +223,7 @@ TEST_CASE("A flight meets its goals one after the other, touches among them, and
     REQUIRE(flight.flown.goals.size() == 2);
     CHECK(flight.flown.goals[0].touch->end == SpaceTouchEnd::met);
     CHECK_FALSE(flight.flown.goals[1].touch);
-    CHECK(flight.flown.rows.size() == flight.judged.rows.size());
+    CHECK(std::abs(flight.flown.duration_s - flight.judged.duration_s) < 0.05);
     CHECK(flight.judged.goals[0].touch->force_n == Approx(flight.flown.goals[0].touch->force_n).epsilon(0.01));
     CHECK(flight.judged.goals[1].error_m == Approx(flight.flown.goals[1].error_m).margin(1e-3));
 }

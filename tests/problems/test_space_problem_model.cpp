@@ -35,6 +35,17 @@ SpacePlan straight(const SpaceProblem& problem, const Vector3& to_m, std::int64_
     return plan;
 }
 
+/// The flight of that plan, whose end is the goal.
+SpaceFlight flown(SpaceProblem problem, const Vector3& to_m, std::int64_t ticks,
+                  const SpaceExecutionSettings& settings = {}) {
+    SpaceConfigurationGoal goal;
+    goal.x_m = to_m[0];
+    goal.y_m = to_m[1];
+    goal.z_m = to_m[2];
+    problem.goals = {{goal, 5, {}}};
+    return SpaceProblemModel(problem).execute(straight(problem, to_m, ticks), settings);
+}
+
 }  // namespace
 
 TEST_CASE("The start of a problem in space is a motion") {
@@ -61,44 +72,39 @@ TEST_CASE("The start of a problem in space is a motion") {
     CHECK(start_motion(start).joint_rates_rad_s[1] == 0.1);
 }
 
-TEST_CASE("A plan in space is held as long as the last goal asks, the longest of its alternatives") {
-    SpaceProblem problem = good_problem();
-    CHECK(hold_ticks(problem) == 500);
-    problem.goals.push_back(problem.goals[0]);
-    problem.goals.back().hold_s = 2.001;
-    CHECK(hold_ticks(problem) == 201);
-    problem.goals.back().any_of = {problem.goals[0], problem.goals[0]};
-    problem.goals.back().any_of[1].hold_s = 7;
-    CHECK(hold_ticks(problem) == 700);
-}
-
 TEST_CASE("Plans of a problem in space are executed among its obstacles and surfaces") {
     SpaceProblem problem = good_problem();
-    const SpaceProblemModel model(problem);
     SECTION("through free air") {
-        const SpaceFlight flight = model.execute(straight(problem, {-3, 0, 2.5}, 400));
+        const SpaceFlight flight = flown(problem, {-3, 0, 2.5}, 400);
         CHECK(flight.outcome == Outcome::ok);
         CHECK(flight.rows.size() == 901);
         CHECK(flight.min_clearance_m > 1);
         CHECK(std::isfinite(flight.min_clearance_m));
+        REQUIRE(flight.goals.size() == 1);
+        CHECK(flight.goals[0].is_met);
+    }
+    SECTION("to another place than the goal") {
+        const SpaceFlight flight = SpaceProblemModel(problem).execute(straight(problem, {-3, 0, 2.5}, 400));
+        CHECK(flight.outcome == Outcome::goal_missed);
+        CHECK(flight.goals[0].error_m > 5);
     }
     SECTION("into a pole") {
-        const SpaceFlight flight = model.execute(straight(problem, {4, 3, 2}, 2000));
+        const SpaceFlight flight = flown(problem, {4, 3, 2}, 2000);
         CHECK(flight.outcome == Outcome::collision);
         CHECK(flight.min_clearance_m <= 0);
     }
     SECTION("faster than it can") {
-        const SpaceFlight flight = model.execute(straight(problem, {60, 1, 2}, 100));
+        const SpaceFlight flight = flown(problem, {60, 1, 2}, 100);
         CHECK(flight.outcome == Outcome::unstable);
     }
     SECTION("near the ground, which carries it and ends where rotors may fly") {
-        const SpacePlan low = straight(problem, {-4, 1, 0.45}, 600);
-        const SpaceFlight with = model.execute(low);
+        const Vector3 low_m = {-4, 1, 0.45};
+        const SpaceFlight with = flown(problem, low_m, 600);
         CHECK(with.outcome == Outcome::ok);
         CHECK(with.rows.back().rotor_factor[0] > 1.001);
         SpaceExecutionSettings settings;
         settings.aero = false;
-        const SpaceFlight without = model.execute(low, settings);
+        const SpaceFlight without = flown(problem, low_m, 600, settings);
         CHECK(without.rows.back().rotor_factor[0] == 1);
         CHECK(without.energy_j > with.energy_j);
     }
@@ -106,21 +112,21 @@ TEST_CASE("Plans of a problem in space are executed among its obstacles and surf
         problem.uncertainty = Uncertainty{};
         SpaceExecutionSettings settings;
         settings.world = draw_space_world(*problem.uncertainty, problem.robot, 1, 3);
-        const SpacePlan plan = straight(problem, {-3, 0, 2.5}, 400);
-        const SpaceFlight flight = model.execute(plan, settings);
-        const SpaceFlight again = model.execute(plan, settings);
+        const Vector3 to_m = {-3, 0, 2.5};
+        const SpaceFlight flight = flown(problem, to_m, 400, settings);
+        const SpaceFlight again = flown(problem, to_m, 400, settings);
         REQUIRE(flight.rows.size() == again.rows.size());
         CHECK(flight.rows.back().motion == again.rows.back().motion);
         CHECK_FALSE(flight.rows.front().motion.position_m == problem.start.position_m);
-        CHECK_FALSE(flight.rows.back().motion == model.execute(plan).rows.back().motion);
+        CHECK_FALSE(flight.rows.back().motion == flown(problem, to_m, 400).rows.back().motion);
         // One that starts tilted begins as it is.
         problem.start.attitude = {1, 0.2, 0, 0};
-        const SpaceFlight tilted = SpaceProblemModel(problem).execute(plan, settings);
+        const SpaceFlight tilted = flown(problem, to_m, 400, settings);
         CHECK(tilted.rows.front().motion.position_m == problem.start.position_m);
     }
     SECTION("and interrupted on demand") {
         SpaceExecutionSettings settings;
         settings.is_over = [] { return true; };
-        CHECK_THROWS_AS(model.execute(straight(problem, {-3, 0, 2.5}, 400), settings), WorkStopped);
+        CHECK_THROWS_AS(flown(problem, {-3, 0, 2.5}, 400, settings), WorkStopped);
     }
 }

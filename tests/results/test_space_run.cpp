@@ -29,6 +29,9 @@ struct FlownRun {
 
     FlownRun() {
         solution.algorithm = problem.planner.algorithm;
+        SpaceConfigurationGoal here;
+        here.x_m = problem.start.position_m[0];
+        problem.goals = {{here, 1, {}}};
         SpacePlan plan;
         plan.tick_s = 0.01;
         plan.joints = 3;
@@ -88,7 +91,7 @@ TEST_CASE("What is no run in space is rejected with its place") {
         CHECK_THAT(error_of([&] { require_whole_run(run.folder()); }), Contains("trajectory.csv"));
     }
     SECTION("another problem") {
-        run.edit("effective.yaml", "name: around_a_girder", "name: around_a_pier");
+        run.edit("effective.yaml", "around_a_girder", "around_a_pier");
         CHECK_THAT(error_of([&] { return read_space_run(run.folder()); }), Contains("effective.yaml"));
         CHECK_THAT(error_of([&] { require_whole_run(run.folder()); }), Contains("effective.yaml"));
     }

@@ -214,10 +214,6 @@ TEST_CASE("Direct effects in space are those of a rotor at its hub, and walls ar
     const auto towards = beside.wall_nearness({1.5, 0.4, 1});
     CHECK(towards.x == Approx(std::exp(-gap_m / (0.7 * robot.rotor_radius_m))).epsilon(1e-6));
     CHECK(towards.y == Approx(0).margin(1e-9));
-
-    aero.ground = EffectModel::multirotor_images;
-    CHECK(error_of([&] { simulation::DirectSpaceEffect(scene, aero, robot); }).find("single rotor") !=
-          std::string::npos);
 }
 
 TEST_CASE("An arm with more joints than the build flies is an error that says how to build") {

@@ -1,14 +1,24 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "../controllers/planar_twin.hpp"
 #include "../support/random.hpp"
+#include "../support/test_problem.hpp"
 #include "downwash/controllers/configuration.hpp"
 #include "downwash/controllers/control.hpp"
+#include "downwash/problems/problem_model.hpp"
+#include "downwash/problems/touch_places.hpp"
+#include "downwash/scene/space_checker.hpp"
+#include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/pose.hpp"
+#include "downwash/simulation/space_flight.hpp"
 #include "downwash/simulation/space_loop.hpp"
+#include "space_twin.hpp"
 
 // The shipped planar robot in space, along references of the plane: the plane's own closed loop is the oracle.
 
@@ -16,37 +26,6 @@ using namespace downwash;
 using namespace downwash::test;
 
 namespace {
-
-/// The shipped robot with its drag and the age of what its controller sees.
-Robot shipped_robot_in_air() {
-    Robot robot = shipped_robot();
-    robot.multirotor.drag = {1.0, 0.047};
-    robot.arm.drag = {0, 0.0485};
-    robot.controller.delay_s = 0.01;
-    return robot;
-}
-
-/// The same in space.
-SpaceRobot twin_of(const Robot& robot) {
-    SpaceRobot twin;
-    twin.name = robot.name;
-    twin.plant = in_space(robot);
-    twin.plant.drag = robot.multirotor.drag;
-    twin.plant.links[0].drag = robot.arm.drag;
-    twin.plant.end_effector_m = {robot.arm.length_m, 0, 0};
-    twin.plant.wash = robot.arm.wash;
-    const std::size_t rotors = robot.rotors.positions_m.size();
-    twin.rotor_radius_m = robot.rotors.radius_m;
-    twin.min_thrust_n.assign(rotors, robot.rotors.min_thrust_n);
-    twin.max_thrust_n.assign(rotors, robot.rotors.max_thrust_n);
-    SpaceLinkLimits limits;
-    limits.max_torque_nm = robot.arm.max_torque_nm;
-    twin.links.push_back(limits);
-    twin.controller.rate_hz = robot.controller.rate_hz;
-    twin.controller.delay_s = robot.controller.delay_s;
-    twin.controller.law = from_planar(gains_of(robot));
-    return twin;
-}
 
 /// The same world in space.
 SpaceWorld in_space(const World& world) {
@@ -256,4 +235,60 @@ TEST_CASE("So it does in worlds with the parameters of the plane") {
         CHECK(found.place_m < 1e-6);
         CHECK(found.angle_rad < 1e-6);
     }
+}
+
+TEST_CASE("The end of an arm presses on a wall in space as in the plane") {
+    Problem problem = ceiling_problem();
+    problem.robot = shipped_robot_in_air();
+    problem.robot.body = {{Box{{1.04, 1.04, 0.22}}, {0, 0, 0}}};
+    problem.aero.enabled = false;
+    problem.obstacles.push_back(box("wall", {0.3, 8, 5}, {4.5, 0, 2.5}));
+    problem.goal = Goal{};
+    ContactGoal& contact = problem.goal.kind.emplace<ContactGoal>();
+    contact.obstacle = "wall";
+    contact.part = TouchingPart::end_effector;
+    contact.force_n = 5;
+    contact.z_m = 2;
+    problem.goal.hold_s = 4;
+    problem = with_touches(problem);
+    REQUIRE(problem.goal.any_of.size() == 1);
+    const auto model = make_flight_model(problem);
+    const Configuration at = placed_at(problem.goal.any_of[0], model->tick().plant, {0, 0, 0}, 0, 0);
+    const std::vector<ReferenceKnot> knots{{0, at_rest(at)}};
+    const Execution planar = execute(*model, model->state_at(level_at(at)), knots, std::span(&problem.goal, 1), false);
+
+    SpaceRobot twin = twin_of(problem.robot);
+    twin.body = {{Box{{1.04, 1.04, 0.22}}, {0, 0, 0}}};
+    twin.links[0].body = {{Capsule{problem.robot.arm.radius_m, {0, 0, 0}, twin.plant.end_effector_m}, {}}};
+    const auto scene = std::make_shared<const Scene>(problem.obstacles);
+    const SpaceChecker checker(scene, shape_of(twin));
+    SpaceContactGoal goal;
+    goal.obstacle = "wall";
+    goal.force_n = 5;
+    const SpaceGoalRule rule(twin, scene, {SpaceGoal{goal, 4, {}}});
+    SpaceFlightSettings settings;
+    settings.goals = &rule;
+    settings.checker = &checker;
+    SpaceMotion start;
+    start.position_m = {at[plane::x], 0, at[plane::z]};
+    const SpaceFlight flight = fly(twin, in_space(knots, model->tick().tick_s), start, settings);
+
+    CHECK(planar.outcome == Outcome::ok);
+    CHECK(flight.outcome == Outcome::ok);
+    REQUIRE(planar.touch);
+    REQUIRE(flight.goals[0].touch);
+    const SpaceTouchRecord& touch = *flight.goals[0].touch;
+    CHECK(touch.touched_s == planar.touch->touched_s);
+    CHECK(touch.force_n == Approx(planar.touch->force_n).epsilon(1e-3));
+    CHECK(touch.force_n == Approx(5).epsilon(0.05));
+    CHECK(touch.power_w == Approx(planar.touch->power_w).epsilon(1e-3));
+    double before_m = 0, in_all_m = 0;  // apart, before the touch and in all
+    for (std::size_t i = 0; i < std::min(flight.rows.size(), planar.rows.size()); ++i) {
+        const Vector3& place_m = flight.rows[i].motion.position_m;
+        const double apart_m = std::hypot(place_m[0] - planar.rows[i].q[0], place_m[2] - planar.rows[i].q[1]);
+        in_all_m = std::max(in_all_m, apart_m);
+        before_m = flight.rows[i].t_s < touch.touched_s ? in_all_m : before_m;
+    }
+    CHECK(before_m < 1e-6);
+    CHECK(in_all_m < 1e-3);
 }

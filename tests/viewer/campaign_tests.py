@@ -175,7 +175,7 @@ class Campaign(page_test.BrowserTest):
                         ".map(e => e.classList[0])")
         self.assertLess(order.index("box"), order.index("seed-dot"))
         self.assertEqual(order[-1], "median")
-        self.assertEqual(set(self.every("#flown-costs .seed-dot", "Number(e.getAttribute('r'))")), {3})
+        self.assertEqual(set(self.every("#flown-costs .seed-dot", "Number(e.getAttribute('r'))")), {2.3})
 
     def test_an_empty_list_of_causes_is_none(self):
         self.show(sample_campaign.campaign())

@@ -46,19 +46,19 @@ def _add_names(outlines: Sequence[Any], ax: Any) -> None:
     """The name of every obstacle that is seen, within it or beside it; those with the same outline share a place."""
     low, high = (np.array(limits) for limits in zip(ax.get_xlim(), ax.get_ylim()))
     points_per_m = np.min(ax.get_window_extent().size / ax.figure.dpi * 72 / (high - low))
-    boxes: dict[tuple[Any, ...], list[str]] = {}
+    boxes: dict[tuple[bool, float, float, float, float], list[str]] = {}
     for name, is_cut, rings, lines in outlines:
         corners = np.vstack([*rings, *lines]) if rings or lines else np.empty((0, 2))
         if name and len(corners):
             seen = np.clip(corners, low, high)
             if np.all(np.ptp(seen, axis=0) > 0):
-                box = tuple(np.round([*seen.min(axis=0), *seen.max(axis=0)], 4))
-                boxes.setdefault((is_cut and len(rings) > 0, *box), []).append(name)
-    taken = [(np.array(box[:2]), np.array(box[2:])) for is_filled, *box in boxes if is_filled]
-    for (is_filled, *box), names in boxes.items():
+                x_from, z_from, x_to, z_to = np.round([*seen.min(axis=0), *seen.max(axis=0)], 4).tolist()
+                boxes.setdefault((is_cut and len(rings) > 0, x_from, z_from, x_to, z_to), []).append(name)
+    taken = [(np.array(box[1:3]), np.array(box[3:])) for box in boxes if box[0]]
+    for box, names in boxes.items():
         text = ", ".join(names)
         half = np.array([2.5 * len(text) + 2, 5]) / points_per_m
-        least, most = np.array(box[:2]), np.array(box[2:])
+        is_filled, least, most = box[0], np.array(box[1:3]), np.array(box[3:])
         middle, room = (least + most) / 2, (most - least) / 2 - half
         within = [middle + [share * room[0], 0] for share in (0, -0.5, 0.5)] if np.all(room > 0) else []
         beside = [np.array([middle[0], z]) for z in (least[1] - half[1], most[1] + half[1])]
@@ -75,7 +75,7 @@ def _add_names(outlines: Sequence[Any], ax: Any) -> None:
 
 @checked()
 def scene(problem: Problem, ax: Any = None) -> Any:
-    """Draws the obstacles with their names: filled where the plane of motion cuts them, dashed where they are beside it."""
+    """Draws obstacles with their names: filled where the plane of motion cuts them, dashed where they are beside it."""
     from matplotlib.patches import PathPatch
 
     ax = _new_axes(problem, ax)

@@ -14,6 +14,7 @@ import {make_readout} from "./readout.js";
 import {make_obstacle_table, make_repeat} from "./repeat.js";
 import {make_scene} from "./scene.js";
 import {make_search} from "./search.js";
+import {plots_of} from "./series.js";
 import {make_theme_switch} from "./theme.js";
 import {make_trouble} from "./trouble.js";
 import {make_figures, make_head, make_verdict} from "./verdict.js";
@@ -33,7 +34,7 @@ function assemble(page, model, theme) {
     const playback = clock ? make_playback(model, clock) : null;
     const space = make_view3d(model, clock, theme);
     const scene = make_scene(model, clock, playback, space);
-    const plots = clock ? make_plots(model, clock, playback) : null;
+    const plots = clock ? make_plots(plots_of(model), model, clock, playback) : null;
     page.replaceChildren(
         h("a", {class: "skip screen-only", href: "#scene"}, "To the scene"), make_head(model, theme.element),
         h("main", {class: "of-run"}, make_verdict(model), make_figures(model),

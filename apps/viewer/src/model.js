@@ -44,7 +44,7 @@ function are_alike(a, b) {
 }
 
 /** What each rotor's columns are, alike ones put together: lines that would cover each other are one line. */
-function rotor_lines(data, count, suffix) {
+export function rotor_lines(data, count, suffix) {
     const lines = [];
     for (let rotor = 0; rotor < count; ++rotor) {
         const values = data[`rotor_${rotor + 1}_${suffix}`];
@@ -61,7 +61,7 @@ function rotor_lines(data, count, suffix) {
     return lines;
 }
 
-function objective_text(objective) {
+export function objective_text(objective) {
     return typeof objective === "string" ?
         objective :
         Object.entries(objective ?? {}).map(([name, weight]) => `${weight} × ${name}`).join(" + ");

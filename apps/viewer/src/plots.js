@@ -5,7 +5,6 @@ import {scaleLinear} from "d3-scale";
 import {h, once_a_frame, s, set_attributes} from "./dom.js";
 import {number, seconds} from "./format.js";
 import {range_of} from "./numbers.js";
-import {plots_of} from "./series.js";
 import {keep_sized} from "./sizing.js";
 
 const margin = {
@@ -89,7 +88,8 @@ class TimePlot {
                         each.name ? h("span", {class: "name"}, each.name) : null, this.values[index]))),
             this.svg);
         const low = Math.min(...all), high = Math.max(...all);
-        const pad = high > low ? 0.05 * (high - low) : Math.max(0.05 * Math.abs(high), 0.5);
+        const span = high - low, is_noise = span < (plot.least_span ?? 0);
+        const pad = is_noise ? (plot.least_span - span) / 2 : span > 0 ? 0.05 * span : Math.max(0.05 * Math.abs(high), 0.5);
         this.domain = [plot.from_zero && low === 0 ? 0 : low - pad, high + pad];
     }
 
@@ -222,8 +222,9 @@ function make_table(plots, model, clock) {
                         columns.map(({plot, each}) => h("td", null, plot.text(each.values[row])))))))));
 }
 
-export function make_plots(model, clock, playback) {
-    const plots = plots_of(model).map((plot) => new TimePlot(plot, model));
+/** @param {import("./series.js").Plot[]} shown */
+export function make_plots(shown, model, clock, playback) {
+    const plots = shown.map((plot) => new TimePlot(plot, model));
     const spoken = h("p", {class: "visually-hidden", role: "status"});
     const stack =
         h("div", {

@@ -2,7 +2,7 @@
 
 import {degrees, meters, number, quantity} from "./format.js";
 
-const in_degrees = (values) => values.map((v) => (v * 180) / Math.PI);
+export const in_degrees = (values) => values.map((v) => (v * 180) / Math.PI);
 
 function names_of(rotors, count) {
     const numbers = rotors.map((rotor) => rotor + 1);
@@ -12,10 +12,18 @@ function names_of(rotors, count) {
     return numbers.join(", ");
 }
 
+/** A number of degrees as text. */
+export const as_degrees = (value) => degrees((value * Math.PI) / 180);
+
+/** Lines of rotors, alike ones together: see build_model(). */
+export const rotor_lines = (lines, count) =>
+    lines.map(({rotors, values}, index) => ({name: names_of(rotors, count), values, style: `series-${index % 8}`}));
+
 /**
  * @typedef {{name: string, values: Float64Array, style: string}} Line
  * @typedef {{name: string, value: number, if_near?: boolean}} Limit one that is `if_near` may not flatten the line
  * @typedef {{id: string, title: string, unit: string, lines: Line[], limits?: Limit[], from_zero?: boolean,
+ *            least_span?: number,
  *            text: (value: number) => string}} Plot
  * @returns {Plot[]}
  */
@@ -28,9 +36,6 @@ export function plots_of(model) {
     }
     const tilt = report.limits?.max_tilt_rad;
     const margin = report.limits?.safety_margin_m;
-    const rotor_lines = (lines) =>
-        lines.map(({rotors, values}, index) => ({name: names_of(rotors, count), values, style: `series-${index % 8}`}));
-    const as_degrees = (value) => degrees((value * Math.PI) / 180);
     const plots = [
         {
             id: "tracking",
@@ -68,7 +73,7 @@ export function plots_of(model) {
             title: "Thrust command by rotor",
             unit: "N",
             text: (v) => quantity(v, ".2f", "N"),
-            lines: rotor_lines(model.commands),
+            lines: rotor_lines(model.commands, count),
             limits: [
                 {name: "greatest", value: robot.rotors.max_thrust_n}, {name: "least", value: robot.rotors.min_thrust_n}
             ]
@@ -78,7 +83,7 @@ export function plots_of(model) {
             title: "Thrust ratio K by rotor",
             unit: "1",
             text: (v) => number(v, ".3f"),
-            lines: rotor_lines(model.factors)
+            lines: rotor_lines(model.factors, count)
         },
         {
             id: "clearance",

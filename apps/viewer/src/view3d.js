@@ -4,8 +4,7 @@ import {decode_triangles, inflate, Trouble} from "./decode.js";
 import {h} from "./dom.js";
 
 /** Meshes are unpacked first, as the drawing itself does not wait. */
-async function unpack_solids(model) {
-    const solids = [...model.scene.obstacles, ...model.robot.bodies].map((owner) => owner.solid);
+export async function unpack_solids(solids) {
     for (const solid of solids) {
         if (solid?.triangles && !solid.mesh) {
             solid.mesh = await decode_triangles(solid.triangles);
@@ -13,7 +12,7 @@ async function unpack_solids(model) {
     }
 }
 
-async function load_app() {
+export async function load_app() {
     if (!window.DownwashView3d) {
         const packed = document.getElementById("downwash-view3d")?.textContent ?? "";
         const code = new TextDecoder().decode(await inflate(packed, "The view in space", "gzip"));
@@ -25,7 +24,7 @@ async function load_app() {
     return window.DownwashView3d;
 }
 
-function has_webgl() {
+export function has_webgl() {
     const canvas = document.createElement("canvas");
     return Boolean(canvas.getContext("webgl2") || canvas.getContext("webgl"));
 }
@@ -57,7 +56,7 @@ export function make_view3d(model, clock, theme) {
                 "This browser offers no WebGL here, which the view in space draws with. The view from the side shows " +
                 "the same flight.");
         }
-        await unpack_solids(model);
+        await unpack_solids([...model.scene.obstacles, ...model.robot.bodies].map((owner) => owner.solid));
         app = (await load_app()).start(stage, model, clock);
         app.set_theme(document.documentElement.dataset.theme);
         theme.follow(app.set_theme);

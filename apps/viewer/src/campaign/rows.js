@@ -13,12 +13,13 @@ const p_text = (p) => (p === null ? "" : p < 0.0001 ? "p < 0.0001" : `p = ${numb
 const jitter = (index) => ((index * 0.6180339887498949) % 1) - 0.5;
 
 function dots(values, y, frame, style) {
+    const radius = values.length > 60 ? 1.6 : values.length > 12 ? 2.3 : 3;
     return values.map(
         (value, i) => Number.isFinite(value) ? s("circle", {
             class: `seed-dot ${style}`,
             cx: frame.x(value).toFixed(1),
             cy: (y + 12 * jitter(i)).toFixed(1),
-            r: values.length > 60 ? 1.6 : 3
+            r: radius
         }) :
                                                []);
 }

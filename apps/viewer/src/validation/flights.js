@@ -8,6 +8,7 @@ import {make_plots} from "../plots.js";
 import {make_readout} from "../readout.js";
 import {make_obstacle_table} from "../repeat.js";
 import {make_scene} from "../scene.js";
+import {plots_of} from "../series.js";
 import {outcome_name} from "../words.js";
 import {flight_model} from "./model.js";
 
@@ -30,7 +31,7 @@ function make_player(model, note, signal) {
     const clock = model.data ? make_clock(model.data.t_s) : null;
     const playback = clock ? make_playback(model, clock, signal) : null;
     const scene = make_scene(model, clock, playback);
-    const plots = clock ? make_plots(model, clock, playback) : null;
+    const plots = clock ? make_plots(plots_of(model), model, clock, playback) : null;
     if (clock && model.is_cut_short) {
         clock.set(clock.rows - 1);
     }

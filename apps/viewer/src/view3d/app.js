@@ -6,38 +6,11 @@ import {opening_of} from "../extents.js";
 import {number} from "../format.js";
 import {pose_at} from "../model.js";
 import {are_many, goal_region, is_cut} from "../surroundings.js";
-import {make_camera} from "./camera.js";
+import {make_camera, planar_view} from "./camera.js";
+import {lights, make_canvas, palettes} from "./look.js";
 import {make_names, names_of} from "./names.js";
 import {draw_grid, draw_sheet, grid_around} from "./plane.js";
 import {draw_line, draw_solid, draw_together, draw_tube, draw_vehicle} from "./solids.js";
-
-/** As in the scene: obstacles that the plane of motion cuts are darker than those beside it. */
-const palettes = {
-    light: {
-        paper: "#f7f8f9",
-        section: "#d3d9df",
-        projection: "#e4e9ee",
-        edge: "#5d6770",
-        vehicle: "#30363d",
-        body: "#fbe0cb",
-        flown: "#c2510a",
-        planned: "#30363d",
-        tip: "#00805e",
-        goal: "#a3397a"
-    },
-    dark: {
-        paper: "#13171c",
-        section: "#65717c",
-        projection: "#343d46",
-        edge: "#98a4ae",
-        vehicle: "#dfe5ea",
-        body: "#6b401f",
-        flown: "#ff9b57",
-        planned: "#dfe5ea",
-        tip: "#3fd0a4",
-        goal: "#f08cc8"
-    },
-};
 
 const opacities = {
     section: 0.6,
@@ -46,6 +19,8 @@ const opacities = {
 
 /** Of more triangles than these a ray would meet too many at every turn of the view. */
 const most_met_triangles = 2000;
+
+const in_space = (points) => points.map(([x, z]) => [x, 0, z]);
 
 /** @returns {Map<object, three.Object3D>} the bodies of the obstacles that are hardly seen through */
 function draw_obstacles(world, obstacles, paint) {
@@ -65,7 +40,7 @@ function draw_obstacles(world, obstacles, paint) {
         } else {
             // Too large a mesh for a page: its outline in the plane of motion stands for it.
             for (const ring of section.length > 0 ? section : projection) {
-                world.add(draw_line([...ring, ring[0]], "edge", paint, false));
+                world.add(draw_line(in_space([...ring, ring[0]]), "edge", paint, false));
             }
         }
     }
@@ -93,27 +68,12 @@ function draw_goal(goal, bounds, paint) {
 }
 
 function draw_paths(world, {data}, size_m, paint) {
-    const points = (x_m, z_m) => Array.from(x_m, (x, i) => [x, z_m[i]]);
+    const points = (x_m, z_m) => Array.from(x_m, (x, i) => [x, 0, z_m[i]]);
     const radius = Math.min(0.03, 0.0018 * size_m);
     world.add(
         draw_tube(points(data.x_m, data.z_m), radius, "flown", paint),
         draw_tube(points(data.ee_x_m, data.ee_z_m), 0.6 * radius, "tip", paint),
         draw_line(points(data.ref_x_m, data.ref_z_m), "planned", paint, true));
-}
-
-function lights() {
-    const sun = new three.DirectionalLight(0xffffff, 0.25);
-    sun.position.set(-8, -14, 10);
-    return [new three.HemisphereLight(0xffffff, 0xb4bcc6, 0.85), sun];
-}
-
-function make_canvas(renderer) {
-    const canvas = renderer.domElement;
-    canvas.tabIndex = 0;
-    canvas.setAttribute("role", "img");
-    canvas.setAttribute(
-        "aria-label", "The scene and the flight in three dimensions; the numbers stand in the tables of this page.");
-    return canvas;
 }
 
 /** @param {HTMLElement} stage */
@@ -158,7 +118,7 @@ export function start(stage, model, clock) {
     };
     const {radius_m, positions_m} = robot.rotors;
     const width_m = 2 * (radius_m + Math.max(...positions_m.map(([, y]) => Math.abs(y))));
-    view = make_camera(canvas, extent, width_m, scene.obstacles, render);
+    view = make_camera(canvas, planar_view(extent, width_m, scene.obstacles), render);
     names = make_names(names_of(model, grid, extent), vehicle.covered, bodies);
     stage.replaceChildren(canvas, names.element);
 

@@ -28,15 +28,26 @@ function is_covered({x_m, z_m}, obstacles) {
 }
 
 /**
- * @param {{x_m: [number, number], z_m: [number, number]}} extent of the plane of motion that is seen first
+ * What is seen first of the plane of motion.
+ * @param {{x_m: [number, number], z_m: [number, number]}} extent
  * @param {number} width_m of the vehicle across the plane
  */
-export function make_camera(canvas, extent, width_m, obstacles, render) {
+export function planar_view(extent, width_m, obstacles) {
     const {x_m, z_m} = extent;
-    const target = new three.Vector3((x_m[0] + x_m[1]) / 2, 0, (z_m[0] + z_m[1]) / 2);
-    const size = Math.max(x_m[1] - x_m[0], z_m[1] - z_m[0]);
-    const corners = x_m.flatMap(
-        (x) => z_m.flatMap((z) => [-width_m / 2, width_m / 2].map((y) => new three.Vector3(x, y, z))));
+    return {
+        target: new three.Vector3((x_m[0] + x_m[1]) / 2, 0, (z_m[0] + z_m[1]) / 2),
+        size: Math.max(x_m[1] - x_m[0], z_m[1] - z_m[0]),
+        corners: x_m.flatMap(
+            (x) => z_m.flatMap((z) => [-width_m / 2, width_m / 2].map((y) => new three.Vector3(x, y, z)))),
+        direction: new three.Vector3(0.22, 1, is_covered(extent, obstacles) ? 0.2 : -0.32).normalize(),
+    };
+}
+
+/**
+ * @param {{target: three.Vector3, size: number, corners: three.Vector3[], direction: three.Vector3}} first what is seen
+ *     first: its middle, its size in metres, what has to be in the picture, and where the camera looks
+ */
+export function make_camera(canvas, {target, size, corners, direction}, render) {
     const camera = new three.PerspectiveCamera(40, 2, 0.05, 60 * size);
     camera.up.set(0, 0, 1);
     const controls = new OrbitControls(camera, canvas);
@@ -44,15 +55,16 @@ export function make_camera(canvas, extent, width_m, obstacles, render) {
     controls.minDistance = 0.5;
     controls.maxDistance = 20 * size;
     controls.addEventListener("change", render);
-    const direction = new three.Vector3(0.22, 1, is_covered(extent, obstacles) ? 0.2 : -0.32).normalize();
 
-    const look_at = (point, distance) => {
+    const look_at = (point, distance, along = direction) => {
         controls.target.copy(point);
-        camera.position.copy(point).addScaledVector(direction, -distance);
+        camera.position.copy(point).addScaledVector(along, -distance);
         controls.update();
         render();
     };
-    const home = () => look_at(target, 1.04 * distance_for(corners, target, direction, camera));
+    /** All that is seen first, along another direction. */
+    const look_along = (along) => look_at(target, 1.04 * distance_for(corners, target, along, camera), along);
+    const home = () => look_along(direction);
     const move_to = (point) => {
         const by = point.clone().sub(controls.target);
         camera.position.add(by);
@@ -96,5 +108,5 @@ export function make_camera(canvas, extent, width_m, obstacles, render) {
         controls.update();
         render();
     });
-    return {camera, home, look_at, move_to, zoom_by};
+    return {camera, home, look_along, look_at, move_to, zoom_by};
 }

@@ -76,7 +76,7 @@ function is_behind({at, obstacle}, bodies, camera) {
  * @param {Map<object, three.Object3D>} bodies of the obstacles that are hardly seen through
  * @returns {{element: HTMLElement, draw: (camera, width, height) => void}}
  */
-export function make_names(names, covered, bodies) {
+export function make_names(names, covered, bodies = new Map()) {
     const words = names.map(({kind, text}) => h("span", {class: `name3d ${kind}`}, text));
     const rings = names.map(({kind}) => (kind === "of-goal" ? h("span", {class: "goal-ring3d"}) : null));
     const element = h("div", {class: "names3d", "aria-hidden": "true"}, rings, words);

@@ -52,14 +52,17 @@ function see_through(name, paint, opacity, flatShading = false) {
     return material;
 }
 
-/** A solid with its edges. */
-export function draw_solid(solid, name, paint, opacity) {
+/** A solid with its edges, if they are wanted. */
+export function draw_solid(solid, name, paint, opacity, has_edges = true) {
     const geometry = geometry_of(solid);
     const material = see_through(name, paint, opacity, Boolean(solid.mesh));
-    const edges = new three.LineBasicMaterial({transparent: true, opacity: 0.6});
-    paint(edges, name === "body" ? "vehicle" : "edge");
     const group = new three.Group();
-    group.add(new three.Mesh(geometry, material), new three.LineSegments(new three.EdgesGeometry(geometry, 30), edges));
+    group.add(new three.Mesh(geometry, material));
+    if (has_edges) {
+        const edges = new three.LineBasicMaterial({transparent: true, opacity: 0.6});
+        paint(edges, name === "body" ? "vehicle" : "edge");
+        group.add(new three.LineSegments(new three.EdgesGeometry(geometry, 30), edges));
+    }
     return place(group, solid);
 }
 
@@ -106,11 +109,11 @@ export function draw_together(solids, name, paint, opacity) {
     return new three.Mesh(geometry, see_through(name, paint, opacity));
 }
 
-/** A line in the plane of motion, one pixel wide. */
+/** A line through points of space, one pixel wide. */
 export function draw_line(points, name, paint, dashed) {
     const geometry = new three.BufferGeometry();
     geometry.setAttribute(
-        "position", new three.BufferAttribute(new Float32Array(points.flatMap(([x, z]) => [x, 0, z])), 3));
+        "position", new three.BufferAttribute(new Float32Array(points.flat()), 3));
     const material =
         dashed ? new three.LineDashedMaterial({dashSize: 0.15, gapSize: 0.1}) : new three.LineBasicMaterial();
     paint(material, name);
@@ -124,10 +127,10 @@ export function draw_line(points, name, paint, dashed) {
 /** A path as a tube of that radius: lines are too thin to be seen from afar. */
 export function draw_tube(points, radius, name, paint) {
     const corners = [];
-    for (const [x, z] of points) {
+    for (const [x, y, z] of points) {
         const last = corners[corners.length - 1];
-        if (!last || Math.hypot(x - last.x, z - last.z) > 2 * radius) {
-            corners.push(new three.Vector3(x, 0, z));
+        if (!last || Math.hypot(x - last.x, y - last.y, z - last.z) > 2 * radius) {
+            corners.push(new three.Vector3(x, y, z));
         }
     }
     const material = new three.MeshBasicMaterial();
