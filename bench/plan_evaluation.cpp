@@ -27,7 +27,7 @@ PlanEvaluation::PlanEvaluation(Problem problem, std::uint64_t worlds, std::share
     }
     const int rotors = model_->tick().plant.rotor_count;
     for (const WorldParameter* parameter : world_parameters_of(robot)) {
-        if ((uncertainty.*parameter->spread).form != Spread::Form::exact && parameter->rotor < rotors) {
+        if ((uncertainty.*parameter->spread).form != downwash::Spread::Form::exact && parameter->rotor < rotors) {
             parameters_.emplace_back(parameter->name);
             for (const double at : {low_quantile, high_quantile}) {
                 worlds_.push_back(make_world(robot, world_of(*parameter, uncertainty, robot, at)));

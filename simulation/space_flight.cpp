@@ -151,15 +151,15 @@ bool meets_further_goal(const SpaceFlight& flight, const SpaceFlightSettings& se
 
 /// A hover that was flown, or that the flight was to come to.
 struct FlownHover {
-    SpaceHover hover;
+    SpaceGoalHover hover;
     std::int64_t row = -1;        ///< at its end; -1: not reached
     std::int64_t after_row = -1;  ///< at the end of its touch; -1: none
     std::optional<SpaceTouchRecord> touch;
 };
 
 /// Adds the errors of rows up to one to a visit. @param settling ticks before it that count, too
-void add_rows(const SpaceGoalRule& rule, const SpaceHover& hover, const SpaceWorld& world, const SpaceFlight& flight,
-              std::int64_t last, std::int64_t settling, SpaceGoalVisit& visit) {
+void add_rows(const SpaceGoalRule& rule, const SpaceGoalHover& hover, const SpaceWorld& world,
+              const SpaceFlight& flight, std::int64_t last, std::int64_t settling, SpaceGoalVisit& visit) {
     for (std::int64_t i = std::max<std::int64_t>(0, last - settling); i <= last; ++i) {
         const SpaceMotion& motion = flight.rows[static_cast<std::size_t>(i)].motion;
         const SpaceGoalError error = rule.error(hover, motion, world);
@@ -234,7 +234,7 @@ SpaceFlight fly(const SpaceRobot& robot, const SpacePlan& plan, const SpaceMotio
     const double tick_s = 1 / robot.controller.rate_hz;
     std::vector<FlownHover> hovers;
     if (settings.goals != nullptr) {
-        for (SpaceHover& hover : settings.goals->hovers(plan)) {
+        for (SpaceGoalHover& hover : settings.goals->hovers(plan)) {
             hovers.push_back({std::move(hover), -1, -1, {}});
         }
     }

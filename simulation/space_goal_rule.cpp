@@ -103,7 +103,7 @@ const std::vector<SpaceGoal>& SpaceGoalRule::goals() const noexcept {
     return impl_->goals;
 }
 
-std::vector<SpaceHover> SpaceGoalRule::hovers(const SpacePlan& plan) const {
+std::vector<SpaceGoalHover> SpaceGoalRule::hovers(const SpacePlan& plan) const {
     const Impl& own = *impl_;
     const auto ticks = [&](double hold_s) {
         return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(hold_s / plan.tick_s - 1e-9)));
@@ -112,7 +112,7 @@ std::vector<SpaceHover> SpaceGoalRule::hovers(const SpacePlan& plan) const {
     for (std::size_t i = 0; i < own.goals.size(); ++i) {
         left.push_back(i);
     }
-    std::vector<SpaceHover> hovers;
+    std::vector<SpaceGoalHover> hovers;
     for (std::size_t i = 1; i < plan.reference.size() && left.size() > 1; ++i) {
         const SpaceKnot& from = plan.reference[i - 1];
         const SpaceKnot& to = plan.reference[i];
@@ -143,7 +143,8 @@ std::vector<SpaceHover> SpaceGoalRule::hovers(const SpacePlan& plan) const {
     return hovers;
 }
 
-SpaceGoalError SpaceGoalRule::error(const SpaceHover& hover, const SpaceMotion& motion, const SpaceWorld& world) const {
+SpaceGoalError SpaceGoalRule::error(const SpaceGoalHover& hover, const SpaceMotion& motion,
+                                    const SpaceWorld& world) const {
     const Impl& own = *impl_;
     const SpacePose pose = pose_of(motion);
     if (hover.touch) {

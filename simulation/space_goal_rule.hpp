@@ -20,7 +20,7 @@
 namespace downwash {
 
 /// A hover of a plan for one of its goals.
-struct SpaceHover {
+struct SpaceGoalHover {
     std::size_t goal = 0;             ///< number of the goal
     std::int64_t end_tick = 0;        ///< of the plan; behind the last knot for the last hover
     std::optional<SpaceTouch> touch;  ///< follows where the goal, or the alternative that is met, is a contact
@@ -47,10 +47,10 @@ class DOWNWASH_EXPORT SpaceGoalRule {
     /// plan does not hover for all; the one after the last knot then counts for a goal without a hover.
     /// A hover before a touch lasts touch_hover_s; the touch itself has the goal's hold.
     /// @pre the plan has a knot
-    [[nodiscard]] std::vector<SpaceHover> hovers(const SpacePlan& plan) const;
+    [[nodiscard]] std::vector<SpaceGoalHover> hovers(const SpacePlan& plan) const;
 
     /// How far a vehicle is from the goal of a hover; among alternatives from the one whose tolerances it uses least.
-    [[nodiscard]] SpaceGoalError error(const SpaceHover& hover, const SpaceMotion& motion,
+    [[nodiscard]] SpaceGoalError error(const SpaceGoalHover& hover, const SpaceMotion& motion,
                                        const SpaceWorld& world = {}) const;
 
  private:

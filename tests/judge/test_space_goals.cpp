@@ -200,7 +200,7 @@ TEST_CASE("The judge and an execution find the same touches and the same hovers"
             contact.position_m = Vector3{at_m[0], at_m[1], contact.part == TouchingPart::frame ? 1.3 : -1.1};
         }
         const std::vector<SpaceGoal> goals = {{contact, 4, {}}};
-        const SpaceHover flown = SpaceGoalRule(robot, scene, goals).hovers(plan)[0];
+        const SpaceGoalHover flown = SpaceGoalRule(robot, scene, goals).hovers(plan)[0];
         const judge::SpaceStay judged = judge::SpaceGoals(robot, obstacles, solids, goals, false).stays(plan)[0];
         REQUIRE(flown.touch.has_value() == judged.touch.has_value());
         CHECK(flown.end_tick == judged.end);
