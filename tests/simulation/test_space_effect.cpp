@@ -241,7 +241,7 @@ TEST_CASE("Flights through volumes feel what direct effects give, in lanes to th
     }
     CAPTURE(apart_m, felt);
     CHECK(apart_m < 2e-3);
-    CHECK(felt > 0.01);
+    CHECK(felt > 0.005);
 }
 
 TEST_CASE("Volumes of one image each give K of several rotors at any attitude, and come back from a cache") {
@@ -273,7 +273,8 @@ TEST_CASE("Volumes of one image each give K of several rotors at any attitude, a
         felt = std::max(felt, expected.all - 1);
     }
     CAPTURE(worst, of_body, felt);
-    CHECK(worst <= 0.01);
+    // Errors of the parts add up, and near the cap of 2 the sum of losses counts four times.
+    CHECK(worst <= 0.03);
     CHECK(of_body <= 0.01);
     CHECK(felt > 0.1);
 
