@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 

@@ -22,6 +22,9 @@
 
 namespace downwash {
 
+/// A volume has no more bricks than this.
+inline constexpr std::size_t max_volume_bricks = 4194304;
+
 /// A brick with the memory of what it holds. Nodes and polynomials keep their places while it grows.
 struct OwnedBrick : VolumeBrick {
     OwnedBrick() : VolumeBrick{} {}

@@ -15,9 +15,6 @@
 
 namespace downwash {
 
-/// A volume has no more bricks than this.
-inline constexpr std::size_t max_volume_bricks = 4194304;
-
 /// K over a block of rotor positions in three dimensions, for vehicles that leave one plane. Or how near walls are, if
 /// the effect is that of DirectEffect::walls_around(). Copies share what is filled.
 ///
@@ -36,7 +33,7 @@ class DOWNWASH_EXPORT VolumeMap {
     /// @param frame x and z are those of its plane; the block reaches from `lateral_low_m` to `lateral_high_m` to its
     /// left. Boxes need fewest values where the frame's axes are those of the structure
     /// @param effect of a multirotor model: it is that of a vehicle at one heading (see neighbours_of)
-    /// @throws InputError if the block is empty or not finite, or needs more than max_volume_bricks
+    /// @throws InputError if the block is empty or not finite, or needs more than 4 million bricks
     VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const Bounds& extent,
               double lateral_low_m, double lateral_high_m);
 

@@ -53,7 +53,10 @@ std::size_t CsvReader::required(std::string_view name, std::string_view expected
 }
 
 std::string CsvReader::remedy_without(std::initializer_list<std::string_view> missing) const {
-    return names_remedy(names_, missing, {rest_, line_end_, next_line_});
+    std::vector<std::string_view> really_missing;
+    std::copy_if(missing.begin(), missing.end(), std::back_inserter(really_missing),
+                 [this](std::string_view name) { return !find(name); });
+    return names_remedy(names_, really_missing, {rest_, line_end_, next_line_});
 }
 
 bool CsvReader::next() {

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "downwash/base/csv_dialect.hpp"
-#include "downwash/base/csv_reader.hpp"
 #include "downwash/base/text.hpp"
 
 namespace downwash {
@@ -34,11 +33,11 @@ std::string name_remedy(const std::vector<std::string>& written_names, std::stri
 
 }  // namespace
 
-std::string names_remedy(const std::vector<std::string>& written, std::initializer_list<std::string_view> missing,
+std::string names_remedy(const std::vector<std::string>& written, const std::vector<std::string_view>& missing,
                          const CsvRest& rest) {
     std::string remedy;
     for (const std::string_view name : missing) {
-        remedy += find_column(written, name) ? "" : name_remedy(written, name);
+        remedy += name_remedy(written, name);
     }
     if (!remedy.empty()) {
         return remedy;

@@ -3,7 +3,6 @@
 // Private to base/.
 
 #include <cstddef>
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,9 +17,9 @@ struct CsvRest {
 };
 
 /// What to do about columns that are not there: "; write 'z_over_r [-]' as z_over_r". Empty if nothing is known.
-/// @param written names of the columns   @param missing those of which some are not among them
+/// @param written names of the columns   @param missing those that are not among them
 [[nodiscard]] std::string names_remedy(const std::vector<std::string>& written,
-                                       std::initializer_list<std::string_view> missing, const CsvRest& rest);
+                                       const std::vector<std::string_view>& missing, const CsvRest& rest);
 
 /// What is wrong with the decimal sign of a cell, and what to do; empty if it is not the sign.
 /// @param decimal_line where a number shows the sign of the file; 0 if none does

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "downwash/base/portable_math.hpp"
-#include "downwash/simulation/hover_analysis.hpp"
 
 // How disturbances of a hover develop, by the eigenvalues of its tick.
 

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "downwash/simulation/loop_margins.hpp"
+#include "downwash/simulation/stability_margins.hpp"
 
 // A closed loop that was linearised at its hover, and what follows from it.
 

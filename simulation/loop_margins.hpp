@@ -6,6 +6,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/simulation/robot.hpp"
+#include "downwash/simulation/stability_margins.hpp"
 
 namespace downwash {
 
@@ -17,15 +18,6 @@ inline constexpr std::array all_loop_inputs{LoopInput::thrust, LoopInput::pitch_
 
 /// Name in files: "pitch_torque".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(LoopInput input);
-
-/// How far a loop is from instability.
-struct LoopMargins {
-    double gain_margin_db = 0;    ///< least change of the gain, up or down, that makes it unstable; infinite: none
-    double phase_margin_rad = 0;  ///< least lag, or lead, that makes it unstable; infinite: the gain is never 1
-    double crossover_rad_s = 0;   ///< greatest frequency at which the gain is 1; 0: none
-    double delay_margin_s = 0;    ///< least further delay that makes it unstable by its phase margins
-    double bandwidth_rad_s = 0;   ///< greatest frequency at which the closed loop's answer is 1 / sqrt 2; 0: none
-};
 
 /// The margins of a vehicle that hovers in free air with its arm at an angle, for every LoopInput. The loop is that of
 /// the sampled system: controller, rotor lag, delay and plant, linearised at the trim.

@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "downwash/simulation/space_hover.hpp"
+#include "downwash/simulation/space_hover_trim.hpp"
 
 // One tick of a vehicle in space around its hover, for what knows nothing of its joints.
 
