@@ -114,7 +114,9 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
 TEST_CASE("a law in space that takes up the force of a touch slowly is an error") {
     const TestFolder folder;
     SpaceProblem problem = read_good_space_problem(folder);
-    problem.goals = {SpaceGoal{SpaceContactGoal{.obstacle = "pole"}, 3, {}}};
+    SpaceContactGoal contact;
+    contact.obstacle = "pole";
+    problem.goals = {SpaceGoal{contact, 3, {}}};
     CHECK(space_problem_errors(problem).empty());
     std::get<SpaceInversion>(problem.robot.controller.law).height.kp_1_s2 = 0.04;
     const auto errors = space_problem_errors(problem);
