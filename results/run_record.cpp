@@ -247,8 +247,8 @@ RunRecord read_run(const fs::path& folder) {
     const RunClaims claims = read_head(folder, run, [](const fs::path& file) {
         if (is_space_problem_file(file)) {
             report(file,
-                   "this is a run in space, which pages, pictures and exports do not show yet: its trajectory.csv "
-                   "holds the flight, with the columns that docs/space_files.md lists");
+                   "this is a run in space, which pictures and exports do not show yet: `downwash report` makes its "
+                   "page, and its trajectory.csv holds the flight, with the columns that docs/space_files.md lists");
         }
         return read_problem(file);
     });

@@ -14,6 +14,7 @@
 #include "downwash/cli/plan_origin.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_folder.hpp"
+#include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/space_problem_model.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
@@ -118,6 +119,7 @@ ExitCode execute_in_space(const ExecuteArguments& given) {
     interruption.expect_results();
     const SpaceRunRecord record =
         folder.write(problem, given.problem, warnings, solution, input_facts(problem, model.scene()));
+    write_page(folder.path(), record);
     fmt::print("{}", given.as_json ? record.solution_text : summary_of(solution, folder.path()));
     if (interruption.code() != ExitCode::done) {
         return interruption.code();

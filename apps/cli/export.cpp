@@ -64,7 +64,7 @@ ExitCode export_run(const ExportArguments& given) {
     if (chosen.is_to_be_flown && !given.anyway) {
         require_good_flight(record);
     }
-    write_made_from(source_of(run_folder(given.folder), record), file.parent_path(),
+    write_made_from(source_of(run_folder(given.folder), record.solution_text), file.parent_path(),
                     {{file.filename().string(), exported(record, chosen, settings_of(given))}});
     for (const std::string& warning : export_warnings(record, chosen)) {
         print_error(fmt::format("warning: {}\n", warning));

@@ -9,8 +9,10 @@
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/report/run_figures.hpp"
 #include "downwash/report/run_page.hpp"
+#include "downwash/report/space_page.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -50,10 +52,15 @@ void write_pictures(const ReportArguments& given, const RunRecord& run) {
         }
     }
     const OutputFolder folder(given.out.value_or(run_folder(given.folder)));
-    write_made_from(source_of(run_folder(given.folder), run), folder.path(), pictures);
+    write_made_from(source_of(run_folder(given.folder), run.solution_text), folder.path(), pictures);
     for (const auto& [name, content] : pictures) {
         fmt::print("{}\n", (folder.path() / name).string());
     }
+}
+
+void write_page(const fs::path& folder, const fs::path& file, const std::string& solution_text,
+                const std::string& page) {
+    write_made_from(source_of(folder, solution_text), file.parent_path(), {{file.filename().string(), page}});
 }
 
 ExitCode run(const ReportArguments& given) {
@@ -67,11 +74,16 @@ ExitCode run(const ReportArguments& given) {
         write_pictures(given, read_run(run_folder(given.folder)));
     } else {
         require_pages();
-        const RunRecord shown = read_run(run_folder(given.folder));
-        const fs::path page = given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / run_page_name;
-        write_made_from(
-            source_of(run_folder(given.folder), shown), page.parent_path(),
-            {{page.filename().string(), run_page(shown, *make_flight_model(shown.problem), given.threads)}});
+        const fs::path folder = run_folder(given.folder);
+        const fs::path page = given.out ? fs::path(*given.out) : folder / run_page_name;
+        if (is_space_problem_file((folder / "effective.yaml").string())) {
+            const SpaceRunRecord shown = read_space_run(folder);
+            write_page(folder, page, shown.solution_text, space_page(shown.problem, shown_run(shown)));
+        } else {
+            const RunRecord shown = read_run(folder);
+            write_page(folder, page, shown.solution_text,
+                       run_page(shown, *make_flight_model(shown.problem), given.threads));
+        }
         fmt::print("{}\n", page.string());
     }
     return ExitCode::done;

@@ -50,8 +50,8 @@ RunFolder claimed_folder(const fs::path& path, const SpaceProblem& problem, cons
     return claimed(path, problem, problem_file, force);
 }
 
-SourceFile source_of(const fs::path& folder, const RunRecord& run) {
-    return {folder / run_file_names().front(), run.solution_text};
+SourceFile source_of(const fs::path& folder, const std::string& solution_text) {
+    return {folder / run_file_names().front(), solution_text};
 }
 
 void write_made_from(const SourceFile& source, const fs::path& folder, const NamedTexts& files) {

@@ -26,8 +26,8 @@ struct SourceFile {
     std::string text;
 };
 
-/// The solution.json of a run in a folder.
-[[nodiscard]] SourceFile source_of(const std::filesystem::path& folder, const RunRecord& run);
+/// The solution.json of a run in a folder. @param solution_text what it holds
+[[nodiscard]] SourceFile source_of(const std::filesystem::path& folder, const std::string& solution_text);
 
 /// Writes files into a folder; see write_together(). Beside their source they are written only while it is the same.
 /// @throws UsageError if that fails

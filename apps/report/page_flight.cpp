@@ -40,4 +40,14 @@ Json flight_json(const NumberTable& flight) {
     return {{"rows", flight.rows()}, {"columns", flight.names}, {"same_as", same_as}, {"data", packed.text()}};
 }
 
+std::string command_of_execution(const Json& solution) {
+    const Json::json_pointer aero("/execution/aero"), world("/execution/world");
+    std::string command = "downwash execute effective.yaml --plan solution.json";
+    command += solution.contains(aero) && solution[aero] == false ? " --aero off" : "";
+    if (solution.contains(world) && solution[world].is_object()) {
+        command += " --world " + solution[world].at("index").dump() + " --seed " + solution[world].at("seed").dump();
+    }
+    return command + " --out again";
+}
+
 }  // namespace downwash

@@ -59,12 +59,7 @@ RepeatedBy repeated_by(const Problem& problem, const Json& solution) {
     const bool is_without_aero = solution.contains(aero) && solution[aero] == false;
     const bool is_in_world = solution.contains(world) && solution[world].is_object();
     if (is_without_aero || is_in_world) {
-        std::string command = "downwash execute effective.yaml --plan solution.json";
-        command += is_without_aero ? " --aero off" : "";
-        command += is_in_world ? " --world " + solution[world].at("index").dump() + " --seed " +
-                                     solution[world].at("seed").dump()
-                               : "";
-        return {command + " --out again", ""};
+        return {command_of_execution(solution), ""};
     }
     RepeatedBy repeated{"downwash solve effective.yaml", ""};
     if (solution.contains("replanned")) {

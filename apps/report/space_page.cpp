@@ -23,6 +23,16 @@ Json list_of(const std::string& text) {
 
 }  // namespace
 
+SpaceRun shown_run(const SpaceRunRecord& record) {
+    const Json solution = Json::parse(record.solution_text);
+    return {record.flight,
+            record.solution_text,
+            record.problem_text,
+            {},
+            command_of_execution(solution),
+            solution.value("warnings", Json::array()).dump()};
+}
+
 std::string space_page_data(const SpaceProblem& problem, const SpaceRun& run) {
     Json page{{"schema", "downwash/space-report/v1"},
               {"version", version()},

@@ -4,7 +4,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/problems/space_problem.hpp"
-#include "downwash/results/number_table.hpp"
+#include "downwash/results/run_record.hpp"
 
 namespace downwash {
 
@@ -19,6 +19,9 @@ struct SpaceRun {
     std::string command = {};        ///< that makes the files again; empty: none
     std::string warnings = {};       ///< JSON list of what reading the problem warned of, as in solution.json
 };
+
+/// A run in space as its page shows it: with its warnings, and the command that makes its files again.
+[[nodiscard]] DOWNWASH_EXPORT SpaceRun shown_run(const SpaceRunRecord& record);
 
 /// A problem in space as one self-contained HTML file, with its flight where there is one: three-dimensional view with
 /// playback, plots over time, tables of facts, and what a judge found. The numbers of the flight equal those of the
