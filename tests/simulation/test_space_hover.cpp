@@ -36,6 +36,13 @@ SpacePoint place_of(const SpaceRobot& robot, const Vector3& at_m, double yaw_rad
 /// K = 1 where the rotors of a hover are, and a slope of its own for each of them.
 class Slopes final : public simulation::SpaceEffect {
  public:
+    Slopes(const SpaceRobot& robot, const Vector3& at_m, double scale_1_m, Random& random) {
+        for (const SpaceRotor& rotor : robot.plant.rotors) {
+            hub_m.push_back(at_m + rotor.position_m);
+            slope_1_m.push_back(scale_1_m *
+                                Vector3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 1)});
+        }
+    }
     std::vector<Vector3> hub_m, slope_1_m;
 
     SidedFactor<double> at_rotor(int rotor, const dynamics::LaneVector<double>& at_m) override {
@@ -44,16 +51,6 @@ class Slopes final : public simulation::SpaceEffect {
         return {1 + dot(slope_1_m[i], from_m), 1};
     }
 };
-
-Slopes random_slopes(const SpaceRobot& robot, const Vector3& at_m, double scale_1_m, Random& random) {
-    Slopes slopes;
-    for (const SpaceRotor& rotor : robot.plant.rotors) {
-        slopes.hub_m.push_back(at_m + rotor.position_m);
-        slopes.slope_1_m.push_back(scale_1_m *
-                                   Vector3{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 1)});
-    }
-    return slopes;
-}
 
 /// How far a vehicle is from where it should rest, place and attitude.
 double off(const SpaceMotion& a, const SpaceMotion& b) {
@@ -159,7 +156,7 @@ TEST_CASE("Disturbances of a hover in space grow and decay in flight as fast as 
         }
         const SpacePoint place = place_of(robot, {0, 0, 2}, 0, 0);
         const SpaceHover hover(robot, scene_of({}), calm());
-        Slopes slopes = random_slopes(robot, {0, 0, 2}, random.uniform(0, round % 2 == 0 ? 0.5 : 6), random);
+        Slopes slopes(robot, {0, 0, 2}, random.uniform(0, round % 2 == 0 ? 0.5 : 6), random);
         const SpaceHoverAnalysis analysis = hover.at(place, slopes);
         REQUIRE(analysis.trim.limit == HoldLimit::none);
         const SpaceHoverStability& stability = analysis.stability;

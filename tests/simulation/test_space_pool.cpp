@@ -76,7 +76,7 @@ std::vector<SpaceWorld> some_worlds() {
         world.thrust_scale = -0.004 * s;
         world.rotor_thrust_scale[i % 6] = -0.02;
         world.rotor_time_constant_s = 0.0005 * s;
-        world.delay_s = i == 5 ? 0.085 : 0.004 * (i % 4);
+        world.delay_s = i == 5 ? 0.085 : 0.004 * static_cast<double>(i % 4);
         world.position_bias_m = {0.002 * s, 0, -0.001 * s};
         world.attitude_bias_rad = {0.001 * s, 0.002, 0};
         world.joint_offset_rad[0] = 0.003 * s;
