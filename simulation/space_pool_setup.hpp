@@ -37,8 +37,8 @@ struct SpacePoolSetup {
     SpaceVolumes volumes = {};              ///< surfaces in their nominal places; without them everything is flyable
     const SpaceChecker* checker = nullptr;  ///< of collisions, with obstacles in their nominal places; nullptr: none
     double margin_m = 0;                    ///< least clearance of obstacles, also between ticks, >= 0
-    std::optional<double> energy_budget_j;  ///< a job that has spent more at its end is rejected as over_budget
-    std::function<bool()> is_over;          ///< all threads ask it now and then; true ends flights as interrupted
+    std::optional<double> energy_budget_j = {};  ///< a job that has spent more at its end is rejected as over_budget
+    std::function<bool()> is_over = {};          ///< all threads ask it now and then; true ends flights as interrupted
 };
 
 }  // namespace downwash
