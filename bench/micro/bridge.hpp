@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
 
@@ -19,12 +18,5 @@ struct Bridge {
         return bridge;
     }
 };
-
-/// The volume under the deck of the bridge that bench_aero_map measures, too.
-inline const VolumeMap& volume_under_deck() {
-    static const VolumeMap map(std::make_shared<const DirectEffect>(Bridge::get().model->effect(0)),
-                               Bridge::get().model->plane(), {-8, -2, 8, 10}, -1.25, 1.25);
-    return map;
-}
 
 }  // namespace downwash::bench

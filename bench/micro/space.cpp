@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "bridge.hpp"
+#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/base/lane_pack.hpp"
 #include "downwash/base/numbers.hpp"
 #include "downwash/dynamics/quadrotor.hpp"
@@ -16,6 +17,13 @@ using namespace downwash;
 using bench::Bridge;
 
 namespace {
+
+/// The volume under the deck of the bridge that bench_aero_map measures, too.
+const VolumeMap& volume() {
+    static const VolumeMap map(std::make_shared<const DirectEffect>(Bridge::get().model->effect(0)),
+                               Bridge::get().model->plane(), {-8, -2, 8, 10}, -1.25, 1.25);
+    return map;
+}
 
 /// A quadrotor of the size of the shipped robot, with drag torque and spinning rotors, and links that hang one after
 /// the other.
@@ -95,7 +103,7 @@ void space_tick(benchmark::State& state) {
 }
 template <class T, int n>
 void space_tick_with_map(benchmark::State& state) {
-    fly_space_ticks<T, n>(state, InVolume(bench::volume_under_deck()));
+    fly_space_ticks<T, n>(state, InVolume(volume()));
 }
 
 [[maybe_unused]] const bool space_ticks_are_registered = [] {

@@ -8,15 +8,27 @@
 #include <vector>
 
 #include "../../tests/support/space_robots.hpp"
-#include "bridge.hpp"
+#include "downwash/aeromap/volume_map.hpp"
+#include "downwash/scene/scene.hpp"
 #include "downwash/simulation/space_pool.hpp"
 
 using namespace downwash;
-using bench::Bridge;
 
 namespace {
 
 enum class Air { calm, volume, worlds };
+
+constexpr double deck_z_m = 5;
+
+/// The volume around the robots' rotors under a deck.
+const VolumeMap& volume_under_deck() {
+    static const VolumeMap map(
+        std::make_shared<const DirectEffect>(std::make_shared<const Scene>(std::vector<Obstacle>{
+                                                 {"deck", Box{{30, 2.4, 0.3}}, {0, 0, deck_z_m + 0.15}, {}}}),
+                                             AeroSettings{}, test::space_robot(0).rotor_radius_m),
+        PlaneOfMotion{}, {-8, 0, 8, deck_z_m + 0.5}, -1.5, 1.5);
+    return map;
+}
 
 /// Surfaces, whose volume it looks up for one flight.
 class InVolume final : public simulation::SpaceEffect {
@@ -33,8 +45,8 @@ class InVolume final : public simulation::SpaceEffect {
 SpacePoolSetup setup_of(const SpaceRobot& robot, Air air) {
     SpacePoolSetup setup{robot};
     if (air != Air::calm) {
-        setup.volumes.rotor = &bench::volume_under_deck();
-        setup.aero.tilt_loss = Bridge::get().model->tick().tilt_loss;
+        setup.volumes.rotor = &volume_under_deck();
+        setup.aero = simulation::space_aero(AeroSettings{}, robot.rotor_radius_m);
     }
     return setup;
 }
@@ -66,18 +78,17 @@ const std::vector<SpaceWorld>& worlds() {
     return all;
 }
 
-/// Edges of 3 m and 4 s under the deck, 0.4 to 1 m below it.
+/// Edges of 3 m and 4 s under the deck, 0.3 to 0.6 m below it.
 std::vector<SpaceFlightJob> edges(const SpacePool& pool, int joints, Air air) {
     std::vector<SpaceFlightJob> jobs;
     for (int i = 0; i < 64; ++i) {
         const double s = i / 64.0;
         SpacePoint from, to;
-        const Vector3 at_m = Bridge::get().model->plane().to_world(-6 + 6 * s, 0, 8.6 + 0.5 * s);
-        const Vector3 end_m = Bridge::get().model->plane().to_world(-3 + 6 * s, 0, 9.1 - 0.5 * s);
-        for (int axis = 0; axis < 3; ++axis) {
-            from.position[axis] = at_m[static_cast<std::size_t>(axis)];
-            to.position[axis] = end_m[static_cast<std::size_t>(axis)];
-        }
+        from.position[space::x] = -6 + 6 * s;
+        from.position[space::z] = deck_z_m - 0.6 + 0.3 * s;
+        to.position[space::x] = -3 + 6 * s;
+        to.position[space::y] = 0.4 - 0.8 * s;
+        to.position[space::z] = deck_z_m - 0.3 - 0.3 * s;
         to.position[space::yaw] = 0.8 - s;
         for (int joint = 0; joint < joints; ++joint) {
             to.position[space::first_joint + joint] = 0.6 - s;
