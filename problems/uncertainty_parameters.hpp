@@ -31,8 +31,7 @@ Uncertainty& uncertainty_of(Model& problem) {
 /// @param keys below `uncertainty`
 /// @param robot_of gives the Robot that conditions ask: (const Model&) -> const Robot& or Robot
 template <class Model, class RobotOf>
-void add_uncertainty_rows(std::vector<Parameter<Model>>& rows, std::span<const UncertaintyKey> keys,
-                          RobotOf robot_of) {
+void add_uncertainty_rows(std::vector<Parameter<Model>>& rows, std::span<const UncertaintyKey> keys, RobotOf robot_of) {
     rows.push_back(parameters::group<Model>(
                        "uncertainty", "what is not known exactly; plans survive it. none: everything is nominal",
                        [](const Model& p, std::size_t) { return p.uncertainty.has_value(); },
