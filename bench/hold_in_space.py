@@ -63,7 +63,7 @@ def highest_hub_m(robot):
 
 def holds(program, problem, low, high, step):
     """The hovers of a grid."""
-    return run(program, "aeromap", "hold", problem, "--from", *low, "--to", *high, "--step", step, "--json")["points"]
+    return run(program, "aeromap", "hold", problem, "--low", *low, "--high", *high, "--spacing", step, "--json")["points"]
 
 
 def least_gap_m(program, problem, hub_m, y_m):

@@ -120,7 +120,7 @@ ExitCode run(const HoldArguments& given) {
     if (!space.places.empty() || !space.from.empty() || !space.to.empty() || space.yaw_deg ||
         !space.joints_deg.empty()) {
         throw UsageError(
-            "--place, --from, --to, --yaw-deg and --joints-deg are for problems in space: {} is none, "
+            "--place, --low, --high, --yaw-deg and --joints-deg are for problems in space: {} is none, "
             "expected --at and --arm-deg",
             given.problem);
     }
@@ -166,9 +166,9 @@ void add_aeromap_hold(Command aeromap, Action& action) {
         .add_option("--place X Y Z", space.places,
                     "a place of a problem in space; may be repeated; the multirotor's centre of mass [m]")
         .repeated();
-    command.add_option("--from X Y Z", space.from, "lowest corner of a grid of places in space [m]").values(3);
-    command.add_option("--to X Y Z", space.to, "its highest corner").values(3);
-    command.add_option("--step M", space.step_m, "distance of its places").positive().shows_default();
+    command.add_option("--low X Y Z", space.from, "lowest corner of a grid of places in space [m]").values(3);
+    command.add_option("--high X Y Z", space.to, "its highest corner").values(3);
+    command.add_option("--spacing M", space.step_m, "distance of its places").positive().shows_default();
     command.add_option("--yaw-deg A", space.yaw_deg, "yaw in space; default: that of the start");
     command.add_option("--joints-deg Q", space.joints_deg, "angles of all joints in space; default: those of the start")
         .values(1, max_joints);

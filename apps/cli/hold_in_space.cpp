@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -145,32 +146,32 @@ Vector3 vector_of(const std::vector<double>& at_m) {
 ExitCode hold_in_space(const HoldInSpace& given) {
     const bool has_grid = !given.from.empty() && !given.to.empty();
     if (given.from.empty() != given.to.empty()) {
-        throw UsageError("--from and --to are the two ends of a grid: expected both");
+        throw UsageError("--low and --high are the two ends of a grid: expected both");
     }
     if (given.places.empty() == !has_grid) {
-        throw UsageError("a problem in space needs places: expected --place X Y Z, or a grid --from X Y Z --to X Y Z");
+        throw UsageError("a problem in space needs places: expected --place X Y Z, or a grid --low X Y Z --high X Y Z");
     }
     for (const auto& place : given.places) {
         require_place({place.begin(), place.end()}, "--place");
     }
-    require_place(given.from, "--from");
-    require_place(given.to, "--to");
+    require_place(given.from, "--low");
+    require_place(given.to, "--high");
     const SpaceProblem problem = read_space_problem(given.problem, {}, print_outdated);
     const SpacePoint pose = pose_of(given, problem);
     const SpaceHover hover(problem.robot, std::make_shared<const Scene>(problem.obstacles), problem.aero);
+    std::optional<SpaceHoldMap> map;
+    if (has_grid) {
+        map = make_space_hold_map(hover, vector_of(given.from), vector_of(given.to), given.step_m, pose, given.threads);
+    }
     auto points = Json::array();
     if (!given.as_json) {
         print_heading();
     }
-    if (has_grid) {
-        const SpaceHoldMap map =
-            make_space_hold_map(hover, vector_of(given.from), vector_of(given.to), given.step_m, pose, given.threads);
-        for (std::size_t i = 0; i < map.all.size(); ++i) {
-            if (given.as_json) {
-                points.push_back(json_of(map, i));
-            } else {
-                print_row(map.place_m(i), map.all[i]);
-            }
+    for (std::size_t i = 0; map && i < map->all.size(); ++i) {
+        if (given.as_json) {
+            points.push_back(json_of(*map, i));
+        } else {
+            print_row(map->place_m(i), map->all[i]);
         }
     }
     for (const auto& place : given.places) {

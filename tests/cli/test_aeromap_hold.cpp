@@ -88,7 +88,7 @@ TEST_CASE("A hold query in space takes places and grids, yaw and joints") {
     write_file(work / "space.yaml", text);
     const auto answer =
         work.json("aeromap hold", work / "space.yaml",
-                  "--place 0 -3 2 --place 0 0.1 4.75 --place 0 3 4.94 --yaw-deg 20 --joints-deg 0 10 20");
+                  "--place 0 -3 2 --place 0 0.1 4.85 --place 0 3 4.94 --yaw-deg 20 --joints-deg 0 10 20");
     CHECK(answer.at("yaw_deg").get<double>() == Approx(20));
     CHECK(answer.at("joints_deg").size() == 3);
     const auto& points = answer.at("points");
@@ -103,7 +103,7 @@ TEST_CASE("A hold query in space takes places and grids, yaw and joints") {
     CHECK(points[2].at("verdict") == "not_flyable");
     CHECK(points[2].at("trim").is_null());
 
-    const auto grid = work.json("aeromap hold", work / "space.yaml", "--from 0 -0.2 4 --to 0 0.2 4.1 --step 0.1");
+    const auto grid = work.json("aeromap hold", work / "space.yaml", "--low 0 -0.2 4 --high 0 0.2 4.1 --spacing 0.1");
     REQUIRE(grid.at("points").size() == 10);
     CHECK(grid.at("points")[9].at("y_m").get<double>() == Approx(0.2));
     CHECK(grid.at("points")[9].at("z_m").get<double>() == Approx(4.1));
@@ -111,10 +111,10 @@ TEST_CASE("A hold query in space takes places and grids, yaw and joints") {
                Contains("verdict") && Contains("stable"));
     for (const auto& [options, reason] : {std::pair{"", "--place X Y Z"},
                                           {"--at 0 1", "--place and --joints-deg"},
-                                          {"--from 0 0 1", "expected both"},
+                                          {"--low 0 0 1", "expected both"},
                                           {"--place 0 nan 1", "finite coordinates"},
-                                          {"--from 0 0 2 --to 0 0 1", "expected no end below the other"},
-                                          {"--from -5 -5 1 --to 5 5 4 --step 0.01", "expected a larger one"},
+                                          {"--low 0 0 2 --high 0 0 1", "expected no end below the other"},
+                                          {"--low -5 -5 1 --high 5 5 4 --spacing 0.01", "expected a larger one"},
                                           {"--place 0 0 1 --joints-deg 1", "expected 3, one for each joint"}}) {
         CAPTURE(options);
         check_rejected(work.run("aeromap hold", work / "space.yaml", options), reason);

@@ -72,7 +72,7 @@ def test_targets_in_any_order_are_flown_again_in_the_order_of_the_plan(open_air)
         {
             "uncertainty": "none",
             "goal": {"in_any_order": targets},
-            "planner.max_iterations": 500,
+            "planner.max_iterations": 1500,
             "planner.time_limit_s": None,
         }
     )
