@@ -47,7 +47,7 @@ void stand_still(const TickModel& model, const FlightState& before, FlightState&
 }  // namespace
 
 Rejection fly_touch_ticks(const FlightModel& model, const FlownWorld* world, std::int64_t first_tick,
-                          const Touch& touch, const ReferencePoint& base, FlightEffect& effect, FlightState& state,
+                          const Touch& touch, ReferencePoint base, FlightEffect& effect, FlightState& state,
                           TouchRecord& record, const AfterTouchTick& after) {
     const TickModel& tick_model = model.tick();
     dynamics::PlanarContact contact;

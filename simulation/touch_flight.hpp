@@ -30,9 +30,10 @@ using AfterTouchTick = std::function<Rejection(
 
 /// Flies a touch, from a hover in front of the surface to the same hover.
 /// @param world nullptr: the plain tick   @param first_tick of the whole flight
-/// @param base reference of that hover   @param state vehicle there; replaced by that at the end
+/// @param base reference of that hover; what calls may change its own meanwhile   @param state vehicle there; replaced
+/// by that at the end
 Rejection fly_touch_ticks(const FlightModel& model, const FlownWorld* world, std::int64_t first_tick,
-                          const Touch& touch, const ReferencePoint& base, FlightEffect& effect, FlightState& state,
+                          const Touch& touch, ReferencePoint base, FlightEffect& effect, FlightState& state,
                           TouchRecord& record, const AfterTouchTick& after);
 
 }  // namespace downwash::simulation

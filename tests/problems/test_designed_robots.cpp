@@ -57,7 +57,7 @@ TEST_CASE("rate, delay and law of a controller are kept by a design, its gains a
     CHECK(std::get<Px4Cascade>(controller.law).yaw_p_1_s == 1.25);
 }
 
-TEST_CASE("a robot of a vertical plane gets the gains of its model inversion; another law has an error in its place") {
+TEST_CASE("a robot of a vertical plane gets the gains of its model inversion, another law has an error in its place") {
     const TestFolder folder;
     folder.write("robot.yaml", without_controller(good_robot));
     const AnyRobot designed = read_robot_for_design(folder / "robot.yaml", {});

@@ -135,7 +135,7 @@ TEST_CASE("goals in space have their point, tolerance and direction in every vie
     check_box(box_of(lines_of(figure.side, "range of the camera").pieces), -1.5, 1.5, 2.1, 5.1);
 }
 
-TEST_CASE("the three views are one picture with the names of obstacles; equal ones have equal bytes") {
+TEST_CASE("the three views are one picture with the names of obstacles, equal ones have equal bytes") {
     const SpaceProblem problem = test::bay_problem();
     const SpaceFigure figure = figure_of(problem);
     const std::string texts = test::texts_of(figure, 1200);
