@@ -208,7 +208,7 @@ TEST_CASE("Under a wide ceiling the shipped planar robot in space hovers and fal
     CHECK(unstable >= 2);
 }
 
-TEST_CASE("A rotor under a girder's edge and another beside it turn a hover; flights tell which places hold") {
+TEST_CASE("A rotor under a girder's edge and another beside it turn a hover, and flights tell which places hold") {
     SpaceRobot robot = space_robot(0);
     robot.plant.drag = {};
     const double flange_m = 4;  // its lower side
