@@ -67,30 +67,22 @@ double off(const SpaceMotion& a, const SpaceMotion& b) {
     return std::sqrt(square);
 }
 
-/// The rate at which a small disturbance of a hover grows in a flight, from two equally long stretches: how much larger
-/// the greatest distance is in the second one.
-double flown_rate_1_s(const SpaceRobot& robot, simulation::SpaceEffect& effect, const SpaceHoverTrim& trim,
-                      double settle_s, double stretch_s) {
-    simulation::SpaceLoopSetup setup{.robot = robot, .effect = effect, .is_refined = false};
-    const auto loop = simulation::make_space_loop(setup);
-    SpaceMotion start = trim.motion;
-    start.position_m = start.position_m + Vector3{1e-6, -0.7e-6, 0.8e-6};
-    start.body_rates_rad_s = {1e-6, 1.3e-6, -1e-6};
-    loop->start(start);
-    const double tick_s = 1 / robot.controller.rate_hz;
-    const auto ticks = [&](double time_s) { return static_cast<int>(std::lround(time_s / tick_s)); };
+/// Whether a vehicle leaves its hover for good within a time. It starts at the equilibrium with rotors that carry the
+/// weight alike, which is a disturbance of some 1e-3.
+bool leaves(const SpaceRobot& robot, simulation::SpaceEffect& effect, const SpaceHoverTrim& trim, double time_s) {
+    const auto loop = simulation::make_space_loop({.robot = robot, .effect = effect, .is_refined = false});
+    loop->start(trim.motion);
     SpaceFlightRow row;
-    for (int i = 0; i < ticks(settle_s); ++i) {
+    double last = 0;
+    for (double t_s = 0; t_s < time_s; t_s += 1 / robot.controller.rate_hz) {
         loop->quiet_tick(trim.reference, row);
-    }
-    double greatest[2] = {};
-    for (double& most : greatest) {
-        for (int i = 0; i < ticks(stretch_s); ++i) {
-            loop->quiet_tick(trim.reference, row);
-            most = std::max(most, off(loop->motion(), trim.motion));
+        last = off(loop->motion(), trim.motion);
+        if (!(last < 0.3)) {
+            return true;
         }
     }
-    return std::log(greatest[1] / greatest[0]) / stretch_s;
+    CHECK(last < 1e-4);
+    return false;
 }
 
 }  // namespace
@@ -145,10 +137,10 @@ TEST_CASE("A vehicle whose rotors lean to one side leans to the other to hover")
     CHECK(off(loop->motion(), analysis.trim.motion) < 1e-4);
 }
 
-TEST_CASE("Disturbances of a hover in space grow and decay in flight as fast as its eigenvalues say") {
+TEST_CASE("A vehicle in space leaves hovers that its eigenvalues call unstable, and stays at the others") {
     Random random(11);
     int growing = 0, decaying = 0;
-    for (int round = 0; round < 12; ++round) {
+    for (int round = 0; round < 24; ++round) {
         SpaceRobot robot = space_robot(round % 4);
         robot.controller.delay_s = round % 3 == 0 ? 0.015 : 0;
         if (round % 5 == 4) {
@@ -161,17 +153,11 @@ TEST_CASE("Disturbances of a hover in space grow and decay in flight as fast as 
         REQUIRE(analysis.trim.limit == HoldLimit::none);
         const SpaceHoverStability& stability = analysis.stability;
         CAPTURE(round, stability.growth_rate_1_s, stability.frequency_rad_s, space_loop_name(stability.slowest_loop));
-        if (std::abs(stability.growth_rate_1_s) < 0.1 || stability.growth_rate_1_s > 8) {
+        if (std::abs(stability.growth_rate_1_s) < 0.1) {
             continue;
         }
-        // Slow modes need time to stand out; an oscillation is measured over whole periods.
         const bool grows = stability.growth_rate_1_s > 0;
-        const double settle_s = grows ? std::min(20.0, 6 / stability.growth_rate_1_s) : 12;
-        const double half_period_s = stability.frequency_rad_s > 0 ? std::numbers::pi / stability.frequency_rad_s : 0;
-        const double least_s = grows ? 1.5 / stability.growth_rate_1_s : 4;
-        const double stretch_s = half_period_s > 0 ? half_period_s * std::ceil(least_s / half_period_s) : least_s;
-        const double flown = flown_rate_1_s(robot, slopes, analysis.trim, settle_s, stretch_s);
-        CHECK(flown == Approx(stability.growth_rate_1_s).epsilon(0.05));
+        CHECK(leaves(robot, slopes, analysis.trim, grows ? 15 / stability.growth_rate_1_s : 60) == grows);
         ++(grows ? growing : decaying);
     }
     CHECK(growing >= 3);
