@@ -170,7 +170,9 @@ void add_aeromap_hold(Command aeromap, Action& action) {
     command.add_option("--high X Y Z", space.to, "its highest corner").values(3);
     command.add_option("--spacing M", space.step_m, "distance of its places").positive().shows_default();
     command.add_option("--yaw-deg A", space.yaw_deg, "yaw in space; default: that of the start");
-    command.add_option("--joints-deg Q", space.joints_deg, "angles of all joints in space; default: those of the start")
+    command
+        .add_option("--joints-deg Q", space.joints_deg,
+                    "angles of all joints of a robot in space; default: those of the start")
         .values(1, max_joints);
     add_threads(command, space.threads);
     add_json(command, given.as_json);

@@ -106,8 +106,7 @@ void add_margins(Command program, Action& action) {
                     "Print how far a robot's control loops are from instability: gain, phase and delay margins", run);
     command.add_option("ROBOT", given.robot, "robot file").placeholder("ROBOT").required();
     command
-        .add_option("--joints-deg Q", given.joints_deg,
-                    "angles of all joints of a robot in space, instead of some poses")
+        .add_option("--joints-deg Q", given.joints_deg, "angles of all joints of a robot in space; default: some poses")
         .values(1, max_joints);
     command.add_flag(
         "--design", given.designs,

@@ -70,7 +70,7 @@ TEST_CASE("a robot of a vertical plane gets the gains of its model inversion, an
 
     folder.write("robot.yaml", without_controller(good_robot) + "controller: {type: cascaded-pid}\n");
     CHECK_THAT(folder.errors_in([&] { return read_robot_for_design(folder / "robot.yaml", {}); }),
-               Catch::Contains("14:19: controller.type has no gains from bandwidths: expected model-inversion"));
+               Catch::Contains("14:20: controller.type has no gains from bandwidths: expected model-inversion"));
     CHECK_NOTHROW(read_robot_for_design(folder / "robot.yaml", {}, "model-inversion"));
     CHECK_THAT(folder.errors_in([&] { return read_robot_for_design(folder / "robot.yaml", {}, "px4-cascade"); }),
                Catch::Contains("px4-cascade is for robots in space"));

@@ -253,10 +253,11 @@ TEST_CASE("flights in space side by side end where one flight alone does, and fo
     const SpaceChecker checker(scene, shape);
 
     std::vector<SpaceWorld> worlds = some_worlds();
-    for (int i = 0; i < 12; ++i) {  // nearer to the deck, nearer to the post, and too weak
+    for (int i = 0; i < 12; ++i) {  // nearer to the deck, nearer to the post, too weak, and too late
         SpaceWorld world;
         world.scene_m = i < 4 ? Vector3{0, 0, -0.1 * i} : Vector3{-0.07 * (i - 4), 0.02 * i, 0};
-        world.thrust_scale = i > 9 ? -0.55 : 0;
+        world.thrust_scale = i == 10 ? -0.55 : 0;
+        world.delay_s = i == 11 ? 0.085 : 0;
         worlds.push_back(world);
     }
     SpacePoolSetup setup{robot, simulation::space_aero(aero, robot.rotor_radius_m), volumes,
@@ -306,7 +307,7 @@ TEST_CASE("flights in space side by side end where one flight alone does, and fo
         REQUIRE(alone.energy_j == end.plant.energy_j);
     }
     CHECK(ends[Rejection::none] > 0);
-    CHECK(ends[Rejection::unstable] > 0);
+    CHECK((looks_for_collisions || ends[Rejection::unstable] > 0));  // what is lost meets something before
     CHECK(ends[looks_for_collisions ? Rejection::collision : Rejection::flyable_area] > 1);
     CHECK(ends[Rejection::over_budget] > 0);
     for (const auto& [instructions, threads] : ways_to_fly()) {
