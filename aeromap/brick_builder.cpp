@@ -382,7 +382,8 @@ void OwnedBrick::publish(VolumeNode& node, const VolumeNode& content) {
     node.margin_m = content.margin_m;
     node.halves = content.halves;
     node.polynomials = content.polynomials;
-    __atomic_store(&node.kind, &content.kind, __ATOMIC_RELEASE);
+    VolumeNodeKind kind = content.kind;
+    __atomic_store(&node.kind, &kind, __ATOMIC_RELEASE);
 }
 
 const Triquadratic* OwnedBrick::keep(const Triquadratic& all, const Triquadratic& above) {

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdint>
-#include <ranges>
 
 #include "downwash/base/parameter.hpp"
 #include "downwash/base/text.hpp"
@@ -60,8 +59,10 @@ std::string explained(CLI::App& command, const CLI::Error& error) {
             value.starts_with(colon) && list != std::string_view::npos && value.ends_with("}")) {
             std::vector<std::string_view> names;
             const std::string_view words = value.substr(list + none_of.size());
-            for (const auto word : std::views::split(words.substr(0, words.size() - 1), ',')) {
-                names.emplace_back(word.begin(), word.end());
+            for (std::size_t begin = 0; begin < words.size();) {
+                const std::size_t end = words.find_first_of(",}", begin);
+                names.push_back(words.substr(begin, end - begin));
+                begin = end + 1;
             }
             const std::string_view given = value.substr(colon.size(), list - colon.size());
             return fmt::format("{} is '{}': expected {}{}", spelled, excerpt(given), joined_names(names),

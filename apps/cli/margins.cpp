@@ -114,7 +114,7 @@ void add_margins(Command program, Action& action) {
     command.add_option("--law NAME", given.design.law, "law of that section; default: the robot's, or model-inversion")
         .one_of({std::string(SpaceInversion::name), std::string(Px4Cascade::name)});
     SpaceBandwidths& bandwidths = given.design.bandwidths;
-    const auto add_bandwidth = [&](const std::string& spelling, auto& value, const std::string& what) {
+    const auto add_bandwidth = [&command = command](const std::string& spelling, auto& value, const std::string& what) {
         return command.add_option(spelling, value, "natural frequency of " + what).in_range(0.01, 1000.0);
     };
     add_bandwidth("--translation-rad-s W", bandwidths.translation_rad_s, "x and y").shows_default();

@@ -38,6 +38,7 @@ std::vector<ExaminedPose> poses_of(const SpaceRobot& robot, const std::vector<do
 
 std::vector<PoseMargins> margins_of(const SpaceRobot& robot, const std::vector<ExaminedPose>& poses) {
     std::vector<PoseMargins> all;
+    all.reserve(poses.size());
     for (const ExaminedPose& pose : poses) {
         all.push_back({pose, space_loop_margins(robot, pose.joints_rad)});
     }
