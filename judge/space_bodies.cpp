@@ -161,7 +161,7 @@ VectorXd Linkage::accelerations(const BodyMotions& bodies, const std::vector<Bod
         acting.segment<3>(at + 3) =
             loads[i].torque_nm - w.cross(r * (vehicle_.bodies[i].inertia_kg_m2 * (r.transpose() * w)));
     }
-    const VectorXd free = without_mass(bodies, acting);
+    VectorXd free = without_mass(bodies, acting);
     const Rows rows = rows_at(bodies);
     if (rows.error.size() == 0) {
         return free;

@@ -89,7 +89,7 @@ void add_configuration(Rows& all) {
     rows.add(rows.number("yaw_deg", "from the world's x to its y, modulo a turn; null for any", &G::yaw_rad)
                  .between(-3600, 3600));
     rows.add(number_list<SpaceGoal>(rows.path("joints_deg"), "one angle for each joint; left out: any",
-                                    rows.of(&G::joints_rad))
+                                    KindRows<G>::of(&G::joints_rad))
                  .between(-3600, 3600));
     rows.add(rows.size("tolerance_m", "distance that is near enough", 100, &G::tolerance_m));
     rows.add(rows.size("tolerance_deg", "deviation of yaw and of each joint that is near enough", largest_angle_deg,
@@ -112,7 +112,7 @@ void add_pose(Rows& all) {
     rows.add(rows.place("position_m", "the point, in the world", &G::position_m).is_required());
     rows.add(parameters::vector<SpaceGoal>(rows.path("rpy_deg"),
                                            "attitude of the last link's axes, R = Rz(yaw) Ry(pitch) Rx(roll)",
-                                           {"roll", "pitch", "yaw"}, rows.of(&G::rpy_rad))
+                                           {"roll", "pitch", "yaw"}, KindRows<G>::of(&G::rpy_rad))
                  .between(-360, 360)
                  .is_required());
     rows.add(rows.size("tolerance_m", "distance that is near enough", 100, &G::tolerance_m));
@@ -124,7 +124,8 @@ void add_camera(Rows& all) {
     KindRows<G> rows(all, "a camera, the end effector, that looks at a point");
     rows.add(rows.place("target_m", "what it looks at, in the world", &G::target_m).is_required());
     rows.add(parameters::pair<SpaceGoal>(rows.path("distance_m"), "from the end effector to the target",
-                                         {"nearest", "farthest"}, rows.of(&G::nearest_m), rows.of(&G::farthest_m))
+                                         {"nearest", "farthest"}, KindRows<G>::of(&G::nearest_m),
+                                         KindRows<G>::of(&G::farthest_m))
                  .between(0, 1000)
                  .is_required());
     rows.add(rows.direction("in which it should look, in the world; null for any", &G::direction));
@@ -133,18 +134,18 @@ void add_camera(Rows& all) {
     rows.add(rows.size("aim_tolerance_deg", "greatest angle between where the end effector points and that line",
                        largest_angle_deg, &G::aim_tolerance_rad));
     rows.add(parameters::flag<SpaceGoal>(rows.path("sees"), "no obstacle stands between camera and target",
-                                         rows.of(&G::sees)));
+                                         KindRows<G>::of(&G::sees)));
 }
 
 void add_contact(Rows& all) {
     using G = SpaceContactGoal;
     KindRows<G> rows(all, "a surface to touch along its normal and to press on for hold_s");
-    rows.add(parameters::text<SpaceGoal>(rows.path("obstacle"), "name of the obstacle", rows.of(&G::obstacle))
+    rows.add(parameters::text<SpaceGoal>(rows.path("obstacle"), "name of the obstacle", KindRows<G>::of(&G::obstacle))
                  .is_required());
     rows.add(rows.size("force_n", "normal force that is held", 1000, &G::force_n).is_required());
     rows.add(parameters::choice<SpaceGoal, TouchingPart>(
         rows.path("part"), "what touches: the top of the multirotor, from below, or the end of the arm",
-        {{TouchingPart::frame, "frame"}, {TouchingPart::end_effector, "end_effector"}}, rows.of(&G::part)));
+        {{TouchingPart::frame, "frame"}, {TouchingPart::end_effector, "end_effector"}}, KindRows<G>::of(&G::part)));
     rows.add(rows.place("position_m", "point near which it touches; null for anywhere", &G::position_m));
     rows.add(rows.size("tolerance_m", "distance from that point", 100, &G::tolerance_m));
     rows.add(rows.size("force_tolerance_n", "what the mean force of a second may be off by; null: a fifth of force_n",

@@ -10,6 +10,12 @@
 // Robots and problems of a vertical plane and of space have different keys below the same schema. Which kind a file is
 // shows in those that only one of the two has.
 
+namespace downwash {
+struct Campaign;
+struct Problem;
+struct SpaceProblem;
+}  // namespace downwash
+
 namespace downwash::problems {
 
 /// A key that only one of the two kinds has.
@@ -33,5 +39,11 @@ struct FamilyKeys {
 /// @param path of the group, "" for the whole file
 template <class Model>
 [[nodiscard]] std::optional<YamlError> misfit(const std::string& path, const YamlNode& node);
+template <>
+std::optional<YamlError> misfit<Problem>(const std::string& path, const YamlNode& node);
+template <>
+std::optional<YamlError> misfit<SpaceProblem>(const std::string& path, const YamlNode& node);
+template <>
+std::optional<YamlError> misfit<Campaign>(const std::string& path, const YamlNode& node);
 
 }  // namespace downwash::problems

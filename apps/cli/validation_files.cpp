@@ -104,7 +104,7 @@ ValidationRecord record_of(const Validation& validation, const std::string& find
 }  // namespace
 
 std::string write_findings(const OutputFolder& folder, const Validation& validation, const SourceFile& solution) {
-    const std::string findings = text_of(json_of(validation));
+    std::string findings = text_of(json_of(validation));
     // The page takes a while and is written when the findings are safe; that of before goes first.
     std::error_code ignored;
     std::filesystem::remove(folder.path() / page_name, ignored);
