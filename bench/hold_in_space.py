@@ -15,7 +15,8 @@ import tempfile
 from program import run
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
-ROBOTS = ["hexa370_arm3", "snu_f550_arm2", "ars_lrm_space"]
+# With the joints at these angles in degrees: the arm on top of one robot leans forward, and still touches first.
+ROBOTS = {"hexa370_arm3": (0, 0, 0), "snu_f550_arm2": (75, 0), "ars_lrm_space": (0,)}
 UNDERSIDE_M = 6.0
 # The girder is that of the FHWA LRFD design example: flange 0.36 m, web 1.37 m, a deck on top.
 CEILINGS = {
@@ -28,7 +29,6 @@ CEILINGS = {
     ],
     "pipe": ["cylinder: {radius_m: 0.25, length_m: 30, center_m: [0, 0, 6.25], axis: [1, 0, 0]}"],
 }
-HOLDS = ("stable", "unknown", "unstable")
 
 
 def robot_file(folder, robot, observer):
@@ -57,13 +57,15 @@ def problem_file(folder, robot, ceiling):
 
 def highest_hub_m(robot):
     """Height of the highest rotor over the centre of mass."""
-    places = re.search(r"positions_m: (\[\[.*?\]\])", robot.read_text(), re.DOTALL).group(1)
-    return max(float(numbers.split(",")[2]) for numbers in re.findall(r"\[([-0-9., \n]+)\]", places))
+    places = re.search(r"positions_m:(.*?)\n  \w", robot.read_text(), re.DOTALL).group(1)
+    return max(float(z) for z in re.findall(r"\[[-\d.]+, *[-\d.]+, *([-\d.]+)\]", places))
 
 
 def holds(program, problem, low, high, step):
     """The hovers of a grid."""
-    return run(program, "aeromap", "hold", problem, "--low", *low, "--high", *high, "--spacing", step, "--json")["points"]
+    joints_deg = ROBOTS[next(robot for robot in ROBOTS if problem.stem.startswith(robot))]
+    grid = ("--low", *low, "--high", *high, "--spacing", step, "--joints-deg", *joints_deg)
+    return run(program, "aeromap", "hold", problem, *grid, "--json")["points"]
 
 
 def least_gap_m(program, problem, hub_m, y_m):
@@ -100,8 +102,8 @@ def print_across(program, robots, folder):
     """The table of hovers on a grid across a girder and a deck's edge."""
     print("## Across a girder and a deck's edge\n")
     print("Places 5 cm apart: 1 m to either side of the middle of the girder or of the edge, and from 5 to 75 cm between")
-    print("the hubs and the underside. `in` is the coordinate in which unstable hovers move most.\n")
-    print("| robot | observer 1/s | ceiling | stable | unknown | unstable | no equilibrium | not flyable | fastest growth 1/s | in | greatest tilt deg |")
+    print("the hubs and the underside. `in` is the coordinate in which unstable hovers move\nmost; the last column is the greatest distance at which one is unstable.\n")
+    print("| robot | observer 1/s | ceiling | stable | unknown | unstable | no equilibrium | not flyable | fastest growth 1/s | in | unstable up to m |")
     print("| --- | ---: | --- |" + " ---: |" * 6 + " --- | ---: |")
     for robot, observer in robots:
         file = robot_file(folder, robot, observer)
@@ -113,13 +115,14 @@ def print_across(program, robots, folder):
             unstable = [point for point in points if point["verdict"] == "unstable"]
             fastest = max((point["growth_rate_1_s"] for point in unstable), default=None)
             ways = collections.Counter(point["slowest_loop"] for point in unstable)
-            tilt = max((point["tilt_deg"] for point in points if point["verdict"] in HOLDS), default=0)
+            lowest_m = min((point["z_m"] for point in unstable), default=None)
+            gap = "-" if lowest_m is None else f"{top - lowest_m:.2f}"
             print(
                 f"| {robot} | {'shipped' if observer is None else observer} | {ceiling} | {verdicts['stable']} | "
                 f"{verdicts['unknown']} | {verdicts['unstable']} | {verdicts['no_equilibrium']} | "
                 f"{verdicts['not_flyable'] + verdicts['in_collision']} | "
                 f"{'-' if fastest is None else f'{fastest:.2f}'} | "
-                f"{', '.join(f'{way} {count}' for way, count in ways.most_common()) or '-'} | {tilt:.2f} |"
+                f"{', '.join(f'{way} {count}' for way, count in ways.most_common()) or '-'} | {gap} |"
             )
     print()
 
@@ -129,7 +132,7 @@ def main():
     program = sys.argv[1] if len(sys.argv) > 1 else TREE / "build/downwash"
     commit = subprocess.run([TREE / "bench/source_commit.sh"], capture_output=True, text=True, check=True).stdout.strip()
     print("# Hover in space under ceilings\n")
-    print(f"Commit {commit}. Made by `bench/hold_in_space.py`: `downwash aeromap hold` in space, joints at zero, yaw 0.\n")
+    print(f"Commit {commit}. Made by `bench/hold_in_space.py`: `downwash aeromap hold` in space, yaw 0.\n")
     robots = [(robot, observer) for robot in ROBOTS for observer in (None, 0)]
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)

@@ -125,6 +125,7 @@ int slowest_loop(const Eigen::MatrixXd& jacobian, const SpaceHoverStability& sta
     const Complex turn[] = {w * a - x * scalar - (y * c - z * b), w * b - y * scalar - (z * a - x * c),
                             w * c - z * scalar - (x * b - y * a)};
     std::vector<double> sizes;  // by space_loops
+    sizes.reserve(static_cast<std::size_t>(space_loops::first_joint + joints));
     for (int i = 0; i < 3; ++i) {
         sizes.push_back(std::abs(v[i]));
     }

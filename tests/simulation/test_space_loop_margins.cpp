@@ -8,7 +8,6 @@
 #include "../support/error_of.hpp"
 #include "../support/space_robots.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
-#include "downwash/simulation/loop_margins.hpp"
 #include "downwash/simulation/space_hover.hpp"
 #include "space_twin.hpp"
 
@@ -138,7 +137,7 @@ TEST_CASE("Where a longer delay makes a hover in space unstable, a loop has no p
     CHECK(least_rad < 0.02);
 }
 
-TEST_CASE("Gains from bandwidths keep margins with any number of joints, and say where they do not") {
+TEST_CASE("With gains from bandwidths the multirotor's loops keep 6 dB in every pose, with any number of joints") {
     const int joints = GENERATE(0, 1, 2, 3);
     SpaceRobot robot = space_robot(joints);
     CAPTURE(joints);
@@ -146,10 +145,12 @@ TEST_CASE("Gains from bandwidths keep margins with any number of joints, and say
         const SpaceLoopMargins margins = space_loop_margins(robot, pose.joints_rad);
         REQUIRE(margins.loops.size() == static_cast<std::size_t>(6 + joints));
         CHECK(margins.stability.growth_rate_1_s < 0);
-        for (const LoopMargins& loop : margins.loops) {
-            // An arm that stands up falls where its joint loses a quarter of its gain.
-            CHECK(loop.gain_margin_db > (pose.name == "up" ? 2 : 3));
-            CHECK(loop.phase_margin_rad > 0.3);
+        for (int loop = 0; loop < 6 + joints; ++loop) {
+            CAPTURE(pose.name, space_loop_name(loop));
+            // Joints of a light arm below a light vehicle have less, which the command says.
+            CHECK(margins.loops[static_cast<std::size_t>(loop)].gain_margin_db >
+                  (loop < space_loops::first_joint ? 6 : 1));
+            CHECK(margins.loops[static_cast<std::size_t>(loop)].phase_margin_rad > 0.2);
         }
     }
     robot.controller.delay_s = 0.25;
