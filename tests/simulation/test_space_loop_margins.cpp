@@ -8,6 +8,7 @@
 #include "../support/error_of.hpp"
 #include "../support/space_robots.hpp"
 #include "downwash/simulation/hover_analysis.hpp"
+#include "downwash/simulation/loop_margins.hpp"
 #include "downwash/simulation/space_hover.hpp"
 #include "space_twin.hpp"
 
