@@ -26,7 +26,7 @@ const VolumeMap& volume_under_deck() {
         std::make_shared<const DirectEffect>(std::make_shared<const Scene>(std::vector<Obstacle>{
                                                  {"deck", Box{{30, 2.4, 0.3}}, {0, 0, deck_z_m + 0.15}, {}}}),
                                              AeroSettings{}, test::space_robot(0).rotor_radius_m),
-        PlaneOfMotion{}, {-8, 0, 8, deck_z_m + 0.5}, -1.5, 1.5);
+        PlaneOfMotion{}, {-8, 8, 0, deck_z_m + 0.5}, -1.5, 1.5);
     return map;
 }
 
