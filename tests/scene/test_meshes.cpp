@@ -320,9 +320,9 @@ TEST_CASE("A solid mesh stays solid when triangles of it are the wrong way aroun
         for (int i = 0; i < 500; ++i) {
             const Vector3 p = dice.vector(-3, 3);
             const double distance = disc_clearance_m(expected, p, 0.01);
-            // Both are the same distance to 1e-8 m, as distance_m() of scene/convex.hpp promises: triangles that were
-            // turned are met in another order, and the bounds of a distance close in from another side.
-            REQUIRE(disc_clearance_m(found, p, 0.01) == Approx(distance).epsilon(0).margin(1e-8));
+            // distance_m() of scene/convex.hpp promises 1e-8 m; its search ends at 1e-10. Triangles that were turned
+            // are met in another order, and the bounds of a distance close in from another side.
+            REQUIRE(disc_clearance_m(found, p, 0.01) == Approx(distance).epsilon(0).margin(1e-9));
             inside += distance == 0;
         }
         CHECK(inside > 50);
