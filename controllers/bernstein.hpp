@@ -19,20 +19,20 @@ using Bernstein = std::array<double, n + 1>;
 
 namespace bernstein_detail {
 
-constexpr double binomial(int n, int k) {
+constexpr double binomial(std::size_t n, std::size_t k) {
     double number = 1;
-    for (int i = 1; i <= k; ++i) {
-        number = number * (n + 1 - i) / i;  // whole after each step
+    for (std::size_t i = 1; i <= k; ++i) {
+        number = number * static_cast<double>(n + 1 - i) / static_cast<double>(i);  // whole after each step
     }
     return number;
 }
 
 /// Row k, column j: how much a power s^j adds to coefficient k.
-template <int n>
+template <std::size_t n>
 constexpr auto powers = [] {
     std::array<std::array<double, n + 1>, n + 1> share{};
-    for (int k = 0; k <= n; ++k) {
-        for (int j = 0; j <= k; ++j) {
+    for (std::size_t k = 0; k <= n; ++k) {
+        for (std::size_t j = 0; j <= k; ++j) {
             share[k][j] = binomial(k, j) / binomial(n, j);
         }
     }
@@ -40,11 +40,11 @@ constexpr auto powers = [] {
 }();
 
 /// Row i, column j: how much of a[i] b[j] is in coefficient i + j of the product.
-template <int n, int m>
+template <std::size_t n, std::size_t m>
 constexpr auto products = [] {
     std::array<std::array<double, m + 1>, n + 1> share{};
-    for (int i = 0; i <= n; ++i) {
-        for (int j = 0; j <= m; ++j) {
+    for (std::size_t i = 0; i <= n; ++i) {
+        for (std::size_t j = 0; j <= m; ++j) {
             share[i][j] = binomial(n, i) * binomial(m, j) / binomial(n + m, i + j);
         }
     }
@@ -56,11 +56,10 @@ constexpr auto products = [] {
 /// The polynomial c[0] + c[1] s + ... + c[n] s^n.
 template <std::size_t size>
 [[nodiscard]] constexpr Bernstein<static_cast<int>(size) - 1> from_powers(const std::array<double, size>& c) noexcept {
-    constexpr int n = static_cast<int>(size) - 1;
-    Bernstein<n> p{};
-    for (int k = 0; k <= n; ++k) {
-        for (int j = 0; j <= k; ++j) {
-            p[k] += bernstein_detail::powers<n>[k][j] * c[j];
+    Bernstein<static_cast<int>(size) - 1> p{};
+    for (std::size_t k = 0; k < size; ++k) {
+        for (std::size_t j = 0; j <= k; ++j) {
+            p[k] += bernstein_detail::powers<size - 1>[k][j] * c[j];
         }
     }
     return p;
@@ -81,7 +80,7 @@ template <std::size_t size>
 template <std::size_t a_size, std::size_t b_size>
 constexpr void add_product(std::array<double, a_size + b_size - 1>& sum, double factor,
                            const std::array<double, a_size>& a, const std::array<double, b_size>& b) noexcept {
-    constexpr auto& share = bernstein_detail::products<static_cast<int>(a_size) - 1, static_cast<int>(b_size) - 1>;
+    constexpr auto& share = bernstein_detail::products<a_size - 1, b_size - 1>;
     for (std::size_t i = 0; i < a_size; ++i) {
         for (std::size_t j = 0; j < b_size; ++j) {
             sum[i + j] += share[i][j] * (factor * a[i]) * b[j];
