@@ -127,10 +127,11 @@ ExitCode run(const BuildArguments& given) {
 }  // namespace
 
 void add_aeromap_build(Command aeromap, Action& action) {
-    auto [command, given] = add_command(aeromap, action, "build",
-                                        "Evaluate a problem's surface effects, on rotors or on the whole vehicle, on a "
-                                        "regular grid and write it as a file",
-                                        run);
+    auto [command, given] =
+        add_command<BuildArguments>(aeromap, action, "build",
+                                    "Evaluate a problem's surface effects, on rotors or on the whole vehicle, on a "
+                                    "regular grid and write it as a file",
+                                    run);
     add_problem(command, given.problem);
     add_out(command, "FILE", given.output, "a file, .vti (VTK ImageData, opens in ParaView) or .csv").required();
     command.add_option("--step M", given.step_m, "maximum distance between nodes [m]; default aero.grid_m");

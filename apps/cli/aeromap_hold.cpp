@@ -62,7 +62,7 @@ Json stability_json(const HoverStability& stability) {
         {"torque_slope_nm_rad", stability.torque_slope_nm_rad}, {"torque_gain_nm_rad", stability.torque_gain_nm_rad}};
 }
 
-Json json_of(const HoldAnswer& answer, int rotors) {
+Json json_of_answer(const HoldAnswer& answer, int rotors) {
     Json point = {{"x_m", answer.x_m},
                   {"z_m", answer.z_m},
                   {"verdict", name_of(answer.analysis.verdict)},
@@ -145,7 +145,7 @@ ExitCode run(const HoldArguments& given) {
     }
     auto points = Json::array();
     for (const HoldAnswer& answer : answers) {
-        points.push_back(json_of(answer, model->tick().plant.rotor_count));
+        points.push_back(json_of_answer(answer, model->tick().plant.rotor_count));
     }
     print_json({{"arm_deg", given.arm_deg.value_or(arm_rad * degrees_per_radian)}, {"points", std::move(points)}});
     return ExitCode::done;
@@ -154,7 +154,7 @@ ExitCode run(const HoldArguments& given) {
 }  // namespace
 
 void add_aeromap_hold(Command aeromap, Action& action) {
-    auto [command, given] = add_command(
+    auto [command, given] = add_command<HoldArguments>(
         aeromap, action, "hold",
         "Check whether the vehicle can hover at a point: rotor limits, saturation and stability of the closed loop",
         run);

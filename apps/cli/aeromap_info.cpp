@@ -39,7 +39,7 @@ std::optional<std::pair<double, double>> flyable_range(const FactorGrid& grid, c
     return range;
 }
 
-Json json_of(const std::string& file, const FactorGrid& grid) {
+Json json_of_grid(const std::string& file, const FactorGrid& grid) {
     auto fields = Json::array();
     for (const GridField& field : grid.fields()) {
         if (field.name != "flyable") {
@@ -111,7 +111,7 @@ struct InfoArguments {
 
 ExitCode run(const InfoArguments& given) {
     const FactorGrid grid = read_factor_grid(given.file);
-    given.as_json ? print_json(json_of(given.file, grid)) : print_text(given.file, grid);
+    given.as_json ? print_json(json_of_grid(given.file, grid)) : print_text(given.file, grid);
     return ExitCode::done;
 }
 
@@ -119,7 +119,7 @@ ExitCode run(const InfoArguments& given) {
 
 void add_aeromap_info(Command aeromap, Action& action) {
     auto [command, given] =
-        add_command(aeromap, action, "info", "Show what a grid file holds and how it was made", run);
+        add_command<InfoArguments>(aeromap, action, "info", "Show what a grid file holds and how it was made", run);
     command.add_option("FILE", given.file, "CSV file of factors").required();
     add_json(command, given.as_json);
 }

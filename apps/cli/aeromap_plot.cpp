@@ -162,9 +162,9 @@ ExitCode run(const PlotArguments& given) {
 }  // namespace
 
 void add_aeromap_plot(Command aeromap, Action& action) {
-    auto [plot, given] =
-        add_command(aeromap, action, "plot",
-                    "Draw a problem's aero map, curves of models with measurements, or a rotor's potential flow", run);
+    auto [plot, given] = add_command<PlotArguments>(
+        aeromap, action, "plot",
+        "Draw a problem's aero map, curves of models with measurements, or a rotor's potential flow", run);
     given.command = plot;
     plot.add_option("PROBLEM", given.problem, "problem file: draw a picture over its plane of motion")
         .offers_files({".yaml", ".yml"});

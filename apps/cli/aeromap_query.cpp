@@ -138,7 +138,7 @@ class Effects {
     std::shared_ptr<const AeroMap> map_;
 };
 
-std::string text_of(const std::optional<double>& value) {
+std::string text_of_factor(const std::optional<double>& value) {
     return value ? fmt::format("{:.6f}", *value) : "-";
 }
 
@@ -158,8 +158,9 @@ void print_points(const std::vector<PointEffect>& effects, bool as_json) {
                               {"ground", json_of(effect.ground)},
                               {"ceiling", json_of(effect.ceiling)}});
         } else {
-            fmt::print("{:>10.4f} {:>10.4f} {:>10.4f}  {:>10} {:>10} {:>10}{}\n", x_m, y_m, z_m, text_of(effect.factor),
-                       text_of(effect.ground), text_of(effect.ceiling), effect.is_flyable ? "" : "  not flyable");
+            fmt::print("{:>10.4f} {:>10.4f} {:>10.4f}  {:>10} {:>10} {:>10}{}\n", x_m, y_m, z_m,
+                       text_of_factor(effect.factor), text_of_factor(effect.ground), text_of_factor(effect.ceiling),
+                       effect.is_flyable ? "" : "  not flyable");
         }
     }
     if (as_json) {
@@ -308,7 +309,7 @@ ExitCode run(const QueryArguments& given) {
 }  // namespace
 
 void add_aeromap_query(Command aeromap, Action& action) {
-    auto [command, given] = add_command(
+    auto [command, given] = add_command<QueryArguments>(
         aeromap, action, "query",
         "Print the thrust ratio K of a rotor: PROBLEM with --at, or --model with --z-over-r for a wide flat surface",
         run);

@@ -21,7 +21,7 @@ namespace downwash::cli {
 namespace {
 
 /// Which runs are missing, and the commands that make them.
-std::string text_of(const bench::MergedCampaign& merged) {
+std::string text_of_merge(const bench::MergedCampaign& merged) {
     constexpr std::size_t max_shards = 50, max_letters = 500;
     std::string text;
     const std::size_t shown = std::min(merged.missing.size(), max_shards);
@@ -72,7 +72,7 @@ ExitCode merge_shards(const BenchMergeArguments& given) {
     if (merged.missing.empty()) {
         return ExitCode::done;
     }
-    fmt::print("\n{}", text_of(merged));
+    fmt::print("\n{}", text_of_merge(merged));
     return ExitCode::no_solution;
 }
 

@@ -14,7 +14,7 @@
 namespace downwash::cli {
 namespace {
 
-std::string text_of(const bench::CampaignReport& report, const BenchReportArguments& as) {
+std::string text_of_report(const bench::CampaignReport& report, const BenchReportArguments& as) {
     if (as.as_html) {
         return campaign_page(bench::page_json_of(report));
     }
@@ -31,7 +31,7 @@ ExitCode report_campaign(const BenchReportArguments& given) {
         require_pages();
     }
     const bench::CampaignReport report = bench::read_report(given.folder);
-    const std::string text = text_of(report, given);
+    const std::string text = text_of_report(report, given);
     if (given.out) {
         write_result(*given.out, text);
     } else {

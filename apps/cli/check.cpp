@@ -157,7 +157,7 @@ Findings findings_in(const std::string& path) {
     return found;
 }
 
-Json json_of(const LocatedError& found) {
+Json json_of_finding(const LocatedError& found) {
     return {{"file", found.file}, {"line", found.line}, {"column", found.column}, {"message", found.message}};
 }
 
@@ -271,7 +271,7 @@ ProblemDrawings space_drawings_of(const CheckArguments& given, const Findings& f
     if (given.page) {
         Json warnings = Json::array();
         for (const LocatedError& warning : found.warnings) {
-            warnings.push_back(json_of(warning));
+            warnings.push_back(json_of_finding(warning));
         }
         SpaceRun run;
         run.problem_text = effective_yaml(problem, fs::absolute(*given.page).parent_path());
@@ -322,13 +322,13 @@ ExitCode run(const CheckArguments& given) {
         for (const LocatedError& error : found.errors) {
             if (told.insert(to_text(error)).second) {
                 print_error(fmt::format("{}\n", to_text(error)));
-                faults.push_back(json_of(error));
+                faults.push_back(json_of_finding(error));
             }
         }
         for (const LocatedError& warning : found.warnings) {
             if (told.insert(to_text(warning)).second) {
                 print_warning(warning);
-                warnings.push_back(json_of(warning));
+                warnings.push_back(json_of_finding(warning));
             }
         }
         const std::string lines = add_inputs(path, found, lists);
@@ -357,7 +357,7 @@ ExitCode run(const CheckArguments& given) {
 }  // namespace
 
 void add_check(Command program, Action& action) {
-    auto [command, given] = add_command(
+    auto [command, given] = add_command<CheckArguments>(
         program, action, "check",
         "Check problem, robot and campaign files and files of numbers (CSV); report every error and warning with its "
         "line and column, and on one line each what robots, meshes, octrees and tables became; with --picture or "

@@ -125,7 +125,7 @@ std::optional<ExecutionWorld> execution_world(const ExecuteArguments& given, boo
 }
 
 void add_execute(Command program, Action& action) {
-    auto [command, given] = add_command(
+    auto [command, given] = add_command<ExecuteArguments>(
         program, action, "execute",
         "Execute a plan again in closed loop; write the same files as solve, with the record of the search copied",
         run);

@@ -213,7 +213,7 @@ std::set<std::string_view> words_of_keys() {
 }  // namespace
 
 void add_explain(Command program, Action& action) {
-    auto [command, given] = add_command(
+    auto [command, given] = add_command<ExplainArguments>(
         program, action, "explain", "Explain a key of a file: its meaning, the expected value and the default", run);
     command
         .add_option("KEY", given.key,

@@ -65,7 +65,7 @@ Json stability_json(const SpaceHoverStability& stability) {
             {"pitch_slope_nm_rad", stability.pitch_slope_nm_rad}};
 }
 
-Json json_of(const Vector3& at_m, const SpaceHoverAnalysis& analysis, const SpaceRobot& robot) {
+Json json_of_place(const Vector3& at_m, const SpaceHoverAnalysis& analysis, const SpaceRobot& robot) {
     Json point = {{"x_m", at_m[0]},
                   {"y_m", at_m[1]},
                   {"z_m", at_m[2]},
@@ -82,7 +82,7 @@ Json json_of(const Vector3& at_m, const SpaceHoverAnalysis& analysis, const Spac
     return point;
 }
 
-Json json_of(const SpaceHoldMap& map, std::size_t i) {
+Json json_of_place(const SpaceHoldMap& map, std::size_t i) {
     const SpaceHoldNode& node = map.all[i];
     const Vector3 at_m = map.place_m(i);
     const bool has_trim = node.verdict >= HoldVerdict::no_equilibrium;
@@ -169,7 +169,7 @@ ExitCode hold_in_space(const HoldInSpace& given) {
     }
     for (std::size_t i = 0; map && i < map->all.size(); ++i) {
         if (given.as_json) {
-            points.push_back(json_of(*map, i));
+            points.push_back(json_of_place(*map, i));
         } else {
             print_row(map->place_m(i), map->all[i]);
         }
@@ -179,7 +179,7 @@ ExitCode hold_in_space(const HoldInSpace& given) {
         std::copy(place.begin(), place.end(), at.position);
         const SpaceHoverAnalysis analysis = hover.at(at);
         if (given.as_json) {
-            points.push_back(json_of(Vector3{place[0], place[1], place[2]}, analysis, problem.robot));
+            points.push_back(json_of_place(Vector3{place[0], place[1], place[2]}, analysis, problem.robot));
         } else {
             print_row({place[0], place[1], place[2]}, node_of(analysis));
         }

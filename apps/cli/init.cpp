@@ -80,7 +80,7 @@ ExitCode run(const InitArguments& given) {
 }  // namespace
 
 void add_init(Command program, Action& action) {
-    auto [command, given] = add_command(
+    auto [command, given] = add_command<InitArguments>(
         program, action, "init",
         "Write a commented problem to start from, with its robot beside it; existing files are never replaced", run);
     command.add_option("FILE", given.file, "name of the problem file; default my_problem.yaml");

@@ -28,7 +28,7 @@ struct MarginsArguments {
     bool as_json = false;
 };
 
-std::string text_of(double value, const char* unit) {
+std::string text_of_margin(double value, const char* unit) {
     return std::isfinite(value) ? fmt::format("{:.1f} {}", value, unit) : "-";
 }
 
@@ -70,9 +70,10 @@ ExitCode run(const MarginsArguments& given) {
                             {"is_enough", has_enough(margins)}});
             if (!given.as_json) {
                 fmt::print("{:<7}{:<15}{:>12}{:>14}{:>16}{:>14}{}\n", arm, name_of(input),
-                           text_of(margins.gain_margin_db, "dB"),
-                           text_of(margins.phase_margin_rad * degrees_per_radian, "deg"),
-                           text_of(margins.crossover_rad_s, "rad/s"), text_of(1e3 * margins.delay_margin_s, "ms"),
+                           text_of_margin(margins.gain_margin_db, "dB"),
+                           text_of_margin(margins.phase_margin_rad * degrees_per_radian, "deg"),
+                           text_of_margin(margins.crossover_rad_s, "rad/s"),
+                           text_of_margin(1e3 * margins.delay_margin_s, "ms"),
                            has_enough(margins) ? "" : "  below 6 dB or 45 deg");
             }
         }
@@ -101,9 +102,9 @@ std::string arm_name(double arm_rad) {
 }
 
 void add_margins(Command program, Action& action) {
-    auto [command, given] =
-        add_command(program, action, "margins",
-                    "Print how far a robot's control loops are from instability: gain, phase and delay margins", run);
+    auto [command, given] = add_command<MarginsArguments>(
+        program, action, "margins",
+        "Print how far a robot's control loops are from instability: gain, phase and delay margins", run);
     command.add_option("ROBOT", given.robot, "robot file").placeholder("ROBOT").required();
     command
         .add_option("--joints-deg Q", given.joints_deg, "angles of all joints of a robot in space; default: some poses")

@@ -45,7 +45,7 @@ std::vector<PoseMargins> margins_of(const SpaceRobot& robot, const std::vector<E
     return all;
 }
 
-std::string text_of(double value, const char* unit) {
+std::string text_of_margin_in_space(double value, const char* unit) {
     return std::isfinite(value) ? fmt::format("{:.1f} {}", value, unit) : "-";
 }
 
@@ -56,12 +56,14 @@ std::string table_of(const std::vector<PoseMargins>& all, const std::string& bef
     for (const PoseMargins& one : all) {
         for (std::size_t i = 0; i < one.margins.loops.size(); ++i) {
             const LoopMargins& margins = one.margins.loops[i];
-            text += fmt::format("{}{:<7}{:<10}{:>12}{:>14}{:>16}{:>14}{:>14}{}\n", before, one.pose.name,
-                                space_loop_name(static_cast<int>(i)), text_of(margins.gain_margin_db, "dB"),
-                                text_of(margins.phase_margin_rad * degrees_per_radian, "deg"),
-                                text_of(margins.crossover_rad_s, "rad/s"), text_of(1e3 * margins.delay_margin_s, "ms"),
-                                text_of(margins.bandwidth_rad_s, "rad/s"),
-                                has_enough(margins) ? "" : "  below 6 dB or 45 deg");
+            text +=
+                fmt::format("{}{:<7}{:<10}{:>12}{:>14}{:>16}{:>14}{:>14}{}\n", before, one.pose.name,
+                            space_loop_name(static_cast<int>(i)), text_of_margin_in_space(margins.gain_margin_db, "dB"),
+                            text_of_margin_in_space(margins.phase_margin_rad * degrees_per_radian, "deg"),
+                            text_of_margin_in_space(margins.crossover_rad_s, "rad/s"),
+                            text_of_margin_in_space(1e3 * margins.delay_margin_s, "ms"),
+                            text_of_margin_in_space(margins.bandwidth_rad_s, "rad/s"),
+                            has_enough(margins) ? "" : "  below 6 dB or 45 deg");
         }
     }
     for (const PoseMargins& one : all) {
@@ -118,8 +120,8 @@ std::string planar_table(const Robot& robot, const std::string& before) {
         for (const LoopInput input : all_loop_inputs) {
             const LoopMargins& margins = all[static_cast<std::size_t>(input)];
             text += fmt::format("{}{:<7}{:<15}{:>12}{:>14}{}\n", before, arm_name(arm_rad), name_of(input),
-                                text_of(margins.gain_margin_db, "dB"),
-                                text_of(margins.phase_margin_rad * degrees_per_radian, "deg"),
+                                text_of_margin_in_space(margins.gain_margin_db, "dB"),
+                                text_of_margin_in_space(margins.phase_margin_rad * degrees_per_radian, "deg"),
                                 has_enough(margins) ? "" : "  below 6 dB or 45 deg");
         }
     }

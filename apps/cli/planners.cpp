@@ -78,7 +78,8 @@ ExitCode run(const PlannersArguments& given) {
 }  // namespace
 
 void add_planners(Command program, Action& action) {
-    auto [command, given] = add_command(program, action, "planners", "List the search algorithms", run);
+    auto [command, given] =
+        add_command<PlannersArguments>(program, action, "planners", "List the search algorithms", run);
     add_json(command, given.as_json);
 }
 

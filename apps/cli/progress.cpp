@@ -22,7 +22,7 @@ bool is_live_terminal() {
     return isatty(STDERR_FILENO) == 1 && terminal != nullptr && std::string_view(terminal) != "dumb";
 }
 
-std::string text_of(const Progress& progress) {
+std::string text_of_progress(const Progress& progress) {
     const std::string best =
         progress.best_cost ? fmt::format("best planned cost {:.6g}", *progress.best_cost) : "no plan yet";
     if (progress.legs) {
@@ -74,9 +74,9 @@ void ProgressDisplay::show(const Progress& progress) {
         return;
     }
     if (is_live_) {
-        show_live(text_of(progress));
+        show_live(text_of_progress(progress));
     } else if (Clock::now() >= next_log_) {
-        log(text_of(progress));
+        log(text_of_progress(progress));
         next_log_ = Clock::now() + search_period;
     }
 }

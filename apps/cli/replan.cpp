@@ -122,11 +122,11 @@ ExitCode run(const ReplanArguments& given) {
 }  // namespace
 
 void add_replan(Command program, Action& action) {
-    auto [command, given] =
-        add_command(program, action, "replan",
-                    "Plan again for a vehicle that follows a plan, from a moment of it on, in a problem that has "
-                    "changed; write the same files as solve",
-                    run);
+    auto [command, given] = add_command<ReplanArguments>(
+        program, action, "replan",
+        "Plan again for a vehicle that follows a plan, from a moment of it on, in a problem that has "
+        "changed; write the same files as solve",
+        run);
     add_problem(command, given.problem);
     add_plan(command, given.plan);
     command.add_option("--after S", given.at_s, "moment of the plan from which the new one takes over, in s")

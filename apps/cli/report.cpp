@@ -92,7 +92,7 @@ ExitCode run(const ReportArguments& given) {
 }  // namespace
 
 void add_report(Command program, Action& action) {
-    auto [command, given] = add_command(
+    auto [command, given] = add_command<ReportArguments>(
         program, action, "report",
         "Show a run as one self-contained HTML page with scene, playback, plots and search; with --svg, --png or "
         "--pdf, draw pictures for papers instead: the snapshot diagram flight.* and the time plots plots.*",

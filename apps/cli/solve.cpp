@@ -122,12 +122,12 @@ ExitCode run(const SolveArguments& given) {
 }  // namespace
 
 void add_solve(Command program, Action& action) {
-    auto [command, given] =
-        add_command(program, action, "solve",
-                    "Plan with MP-ARM, the motion planner for aerial robotic manipulators, or its dynamics-aware "
-                    "(MP-ARM-DA) or aerodynamics-aware (MP-ARM-ADA) variant; execute the plan with direct "
-                    "aerodynamics; write solution.json, trajectory.csv, tree.csv, effective.yaml and report.html",
-                    run);
+    auto [command, given] = add_command<SolveArguments>(
+        program, action, "solve",
+        "Plan with MP-ARM, the motion planner for aerial robotic manipulators, or its dynamics-aware "
+        "(MP-ARM-DA) or aerodynamics-aware (MP-ARM-ADA) variant; execute the plan with direct "
+        "aerodynamics; write solution.json, trajectory.csv, tree.csv, effective.yaml and report.html",
+        run);
     add_problem(command, given.problem);
     given.planner.add_of_search(command);
     add_threads(command, given.threads);

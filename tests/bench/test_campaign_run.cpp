@@ -152,7 +152,7 @@ TEST_CASE("plans made for one uncertainty are flown in the worlds of another") {
         REQUIRE(run.in_worlds.has_value());
         CHECK(run.in_worlds->worlds == 4);
     }
-    read.evaluated_in[0].uncertainty->mass_scale = Spread::of_sd(0.1);
+    read.evaluated_in[0].uncertainty->mass_scale = downwash::Spread::of_sd(0.1);
     CHECK_THROWS_WITH(run_into(folder, read, true), Catch::Contains("evaluated in ceiling"));
 }
 

@@ -18,7 +18,7 @@ using namespace downwash::test;
 
 namespace {
 
-AeroSettings free_air() {
+AeroSettings no_effects() {
     AeroSettings aero;
     aero.enabled = false;
     return aero;
@@ -28,7 +28,8 @@ SpaceRobot hexa370() {
     return read_space_robot(DOWNWASH_PROBLEMS "/robots/hexa370_arm3.yaml");
 }
 
-Obstacle box(const std::string& name, const Vector3& size_m, const Vector3& center_m, const Vector3& rpy_rad = {}) {
+Obstacle turned_box(const std::string& name, const Vector3& size_m, const Vector3& center_m,
+                    const Vector3& rpy_rad = {}) {
     return {name, Box{size_m}, center_m, rpy_rad};
 }
 
@@ -57,7 +58,7 @@ struct Told {
 /// Flies a plan for goals by both.
 Told told(const SpaceRobot& robot, const SpacePlan& plan, const std::vector<Obstacle>& obstacles,
           const std::vector<SpaceGoal>& goals, const std::optional<SpaceWorld>& world = {},
-          const AeroSettings& aero = free_air()) {
+          const AeroSettings& aero = no_effects()) {
     const auto scene = std::make_shared<const Scene>(obstacles);
     const SpaceChecker checker(scene, shape_of(robot));
     const SpaceGoalRule rule(robot, scene, goals);
@@ -112,8 +113,8 @@ SpaceContactGoal contact(const std::string& obstacle, TouchingPart part, double 
     return goal;
 }
 
-const std::vector<Obstacle> under_a_deck = {box("ground", {20, 20, 1}, {0, 0, -0.5}),
-                                            box("deck", {6, 6, 1}, {0, 0, 4.5})};
+const std::vector<Obstacle> under_a_deck = {turned_box("ground", {20, 20, 1}, {0, 0, -0.5}),
+                                            turned_box("deck", {6, 6, 1}, {0, 0, 4.5})};
 
 /// From half a metre away to 0.3 m under the deck, whose underside is at 4 m. The top is 0.111 m up.
 SpacePlan way_under_the_deck(const SpaceRobot& robot) {
@@ -173,7 +174,7 @@ TEST_CASE("A hexarotor presses on a plate with the end of its arm, and the judge
     std::get<SpaceInversion>(robot.controller.law).joint = {.kp_1_s2 = 400, .kd_1_s = 40};
     SpaceContactGoal wanted = contact("plate", TouchingPart::end_effector, 0.1);
     wanted.position_m = Vector3{0, 0, 1};
-    const std::vector<Obstacle> obstacles = {box("plate", {2, 2, 0.1}, {0, 0, 0.95})};
+    const std::vector<Obstacle> obstacles = {turned_box("plate", {2, 2, 0.1}, {0, 0, 0.95})};
     const SpacePlan plan = way_to(robot, point_at({0.3, -0.2, 1.9}), point_at({0, 0, 1.661}), 300);
     check_met(told(robot, plan, obstacles, {{wanted, 4, {}}}), 0.1, 1e-3);
     // Elsewhere: the robot hovers too far from the wanted place.
@@ -191,7 +192,8 @@ TEST_CASE("An arm presses on walls of any heading and slope along their normals"
     const Vector3 way{std::cos(yaw_rad) * std::cos(slope_rad), std::sin(yaw_rad) * std::cos(slope_rad),
                       -std::sin(slope_rad)};
     const Vector3 middle_m = Vector3{1, 2, 2} + 1.2 * way;
-    const std::vector<Obstacle> obstacles = {box("wall", {0.2, 3, 3}, middle_m + 0.1 * way, {0, slope_rad, yaw_rad})};
+    const std::vector<Obstacle> obstacles = {
+        turned_box("wall", {0.2, 3, 3}, middle_m + 0.1 * way, {0, slope_rad, yaw_rad})};
     // The tip waits 0.3 m in front of the wall.
     const SpacePoint there = point_at({}, yaw_rad, {slope_rad});
     const SpacePose level{{0, 0, 0}, {std::cos(yaw_rad / 2), 0, 0, std::sin(yaw_rad / 2)}, {slope_rad}};
@@ -269,7 +271,7 @@ TEST_CASE("A touch that is missed, too fast, too strong or of something else end
         // A beam below the deck, in the way of a rotor alone. It hangs 5 cm deeper, and the top of a rotor is 3.5 cm
         // lower than the frame.
         std::vector<Obstacle> obstacles = under_a_deck;
-        obstacles.push_back(box("beam", {0.02, 0.02, 0.05}, {0.24, 0.05, 3.975}));
+        obstacles.push_back(turned_box("beam", {0.02, 0.02, 0.05}, {0.24, 0.05, 3.975}));
         both_end(fly_for(goal, obstacles), Outcome::collision, judge::Outcome::collision, SpaceTouchEnd::cut_short);
     }
 }

@@ -6,12 +6,12 @@
 #include "../support/test_problem.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/planner/solve.hpp"
+#include "searched_problems.hpp"
 
 using namespace downwash;
 
 namespace {
 
-constexpr Variant variants[] = {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada};
 constexpr const char* planners_over_controls[] = {"rrt", "sst", "kpiece1", "est"};
 
 SolveOptions until_first() {
@@ -30,7 +30,7 @@ Problem with(Variant variant, std::string_view algorithm, Problem problem = test
 /// Every combination that exists.
 template <class Check>
 void for_all(const Check& check) {
-    for (const Variant variant : variants) {
+    for (const Variant variant : test::variants) {
         for (const AlgorithmInfo& algorithm : algorithms()) {
             if (algorithm.plans_for(variant)) {
                 CAPTURE(name_of(variant), algorithm.name);
@@ -212,7 +212,7 @@ TEST_CASE("an algorithm that does not plan for the variant is an error, and anot
         CHECK(errors.front().key == "planner.algorithm");
         return errors.front().message;
     };
-    for (const Variant variant : variants) {
+    for (const Variant variant : test::variants) {
         std::vector<std::string_view> planning;
         for (const AlgorithmInfo& algorithm : algorithms()) {
             CAPTURE(name_of(variant), algorithm.name);

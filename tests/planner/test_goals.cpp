@@ -10,12 +10,11 @@
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/search_clock.hpp"
 #include "downwash/planner/solve.hpp"
+#include "searched_problems.hpp"
 
 using namespace downwash;
 
 namespace {
-
-constexpr Variant variants[] = {Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada};
 
 Goal place(double x_m, double z_m, double hold_s) {
     Goal goal = test::configuration_goal(x_m, z_m);
@@ -207,7 +206,7 @@ TEST_CASE("a tour with a part that gives up at once comes to an end") {
 }
 
 TEST_CASE("goals in a row are visited in their order, each held for its own time, in one flight") {
-    for (const Variant variant : variants) {
+    for (const Variant variant : test::variants) {
         CAPTURE(name_of(variant));
         const Problem problem = tour(variant);
         const Solution solution = solve(problem);
@@ -371,7 +370,7 @@ TEST_CASE("the same place twice is held twice") {
 }
 
 TEST_CASE("of several goals the cheap one is flown to and held for its own time") {
-    for (const Variant variant : variants) {
+    for (const Variant variant : test::variants) {
         CAPTURE(name_of(variant));
         const Solution solution = solve(choice_of({place(5, 2, 2), place(-2, 2.5, 3), place(4, 3, 1)}, variant,
                                                   variant == Variant::mp_arm ? 1500 : 100));

@@ -13,7 +13,7 @@ using namespace downwash;
 
 namespace {
 
-SpaceProblem good_problem() {
+SpaceProblem space_problem_of_files() {
     const test::TestFolder folder;
     return test::read_good_space_problem(folder);
 }
@@ -73,7 +73,7 @@ TEST_CASE("The start of a problem in space is a motion") {
 }
 
 TEST_CASE("Plans of a problem in space are executed among its obstacles and surfaces") {
-    SpaceProblem problem = good_problem();
+    SpaceProblem problem = space_problem_of_files();
     SECTION("through free air") {
         const SpaceFlight flight = flown(problem, {-3, 0, 2.5}, 400);
         CHECK(flight.outcome == Outcome::ok);

@@ -61,7 +61,7 @@ double highest_at(const Scene& scene, const Vector3& p) {
     return highest_m;
 }
 
-std::string error_in(const Octomap& octomap) {
+std::string refusal_of(const Octomap& octomap) {
     return test::error_of([&] { return Scene({{"", octomap, {}, {}}}); });
 }
 
@@ -69,14 +69,14 @@ std::string error_in(const Octomap& octomap) {
 
 TEST_CASE("Octrees that cannot stand in a scene are errors with their place") {
     using Catch::Matchers::Contains;
-    CHECK(error_in(octomap_of({1, {{{0, 0, 0}, 1}}})) == "none");
-    CHECK_THAT(error_in({}), Contains("obstacles[0].octomap.file: must have been read"));
-    CHECK_THAT(error_in(octomap_of({1, {}})), Contains("obstacles[0].octomap.file: has no occupied cube"));
+    CHECK(refusal_of(octomap_of({1, {{{0, 0, 0}, 1}}})) == "none");
+    CHECK_THAT(refusal_of({}), Contains("obstacles[0].octomap.file: must have been read"));
+    CHECK_THAT(refusal_of(octomap_of({1, {}})), Contains("obstacles[0].octomap.file: has no occupied cube"));
     for (const OccupiedCube& bad :
          {OccupiedCube{{0, std::nan(""), 0}, 1}, {{0, 0, 0}, 0}, {{0, 0, 0}, std::nan("")}, {{2e6, 0, 0}, 1}}) {
-        CHECK_THAT(error_in(octomap_of({1, {bad}})), Contains("has a cube with a centre or side"));
+        CHECK_THAT(refusal_of(octomap_of({1, {bad}})), Contains("has a cube with a centre or side"));
     }
-    CHECK_THAT(error_in(octomap_of({1, std::vector<OccupiedCube>(2'000'001, {{0, 0, 0}, 1})})),
+    CHECK_THAT(refusal_of(octomap_of({1, std::vector<OccupiedCube>(2'000'001, {{0, 0, 0}, 1})})),
                Contains("at most 2000000 are allowed"));
 }
 
@@ -151,5 +151,5 @@ TEST_CASE("Unseen space is solid where it counts as occupied, and a scene of its
     CHECK(Scene({{"", octomap_of(tree), {}, {}}}).unseen_space() == nullptr);
     octomap = octomap_of({0.5, tree.cubes, {}, {}, 0.5, true, false});
     octomap.unknown = UnknownSpace::occupied;
-    CHECK_THAT(error_in(octomap), Catch::Contains("obstacles[0].octomap.unknown: is occupied, and the unseen space"));
+    CHECK_THAT(refusal_of(octomap), Catch::Contains("obstacles[0].octomap.unknown: is occupied, and the unseen space"));
 }

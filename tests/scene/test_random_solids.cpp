@@ -14,6 +14,7 @@
 
 #include "../support/mesh_bytes.hpp"
 #include "../support/meshes.hpp"
+#include "../support/polygons.hpp"
 #include "../support/random.hpp"
 #include "downwash/scene/collision_checker.hpp"
 #include "downwash/scene/mesh_file.hpp"
@@ -22,6 +23,7 @@
 
 using namespace downwash;
 using test::joined;
+using test::length;
 using test::mesh_of;
 using test::moved;
 using test::Random;
@@ -30,10 +32,6 @@ using test::Triangle;
 namespace {
 
 using Soup = std::vector<Triangle>;
-
-double length(const Vector3& v) {
-    return std::sqrt(dot(v, v));
-}
 
 Mesh some_tetrahedron(Random& random) {
     for (;;) {

@@ -53,7 +53,8 @@ bool is_met_at(const SpaceGoalKind& kind, const SpacePose& pose, const std::vect
     return is_met(error_of(kind, pose, obstacles, world));
 }
 
-Obstacle box(const std::string& name, const Vector3& size_m, const Vector3& center_m, const Vector3& rpy_rad = {}) {
+Obstacle turned_box(const std::string& name, const Vector3& size_m, const Vector3& center_m,
+                    const Vector3& rpy_rad = {}) {
     return {name, Box{size_m}, center_m, rpy_rad};
 }
 
@@ -159,9 +160,9 @@ TEST_CASE("A camera has to be near enough, to aim, to look in the direction and 
     CHECK_FALSE(is_met_at(goal, to_the_left()));
 
     goal.target_m = {1, 3.5, 2.9};
-    const std::vector<Obstacle> plate = {box("plate", {0.4, 0.01, 0.4}, {1.2011, 3, 2.9})};
+    const std::vector<Obstacle> plate = {turned_box("plate", {0.4, 0.01, 0.4}, {1.2011, 3, 2.9})};
     CHECK(is_met_at(goal, to_the_left(), plate));  // it ends 1.1 mm beside the line
-    const std::vector<Obstacle> nearer = {box("plate", {0.4, 0.01, 0.4}, {1.2009, 3, 2.9})};
+    const std::vector<Obstacle> nearer = {turned_box("plate", {0.4, 0.01, 0.4}, {1.2009, 3, 2.9})};
     CHECK_FALSE(is_met_at(goal, to_the_left(), nearer));
     CHECK(error_of(goal, to_the_left(), nearer).is_hidden);
     goal.sees = false;
@@ -170,7 +171,9 @@ TEST_CASE("A camera has to be near enough, to aim, to look in the direction and 
 
 TEST_CASE("A target belongs to what it lies on, up to two centimetres deep, and goes with the scene") {
     const SpaceCameraGoal goal{{1, 3.5, 2.9}, 0.5, 1.5, {}, 1, 5 * degree, true};
-    const auto wall = [](double face_m) { return std::vector<Obstacle>{box("wall", {4, 1, 4}, {1, face_m + 0.5, 3})}; };
+    const auto wall = [](double face_m) {
+        return std::vector<Obstacle>{turned_box("wall", {4, 1, 4}, {1, face_m + 0.5, 3})};
+    };
     CHECK(is_met_at(goal, to_the_left(), wall(3.5)));
     CHECK(is_met_at(goal, to_the_left(), wall(3.482)));  // less the beam's own millimetre
     CHECK_FALSE(is_met_at(goal, to_the_left(), wall(3.478)));
@@ -194,7 +197,7 @@ TEST_CASE("A robot touches the nearest point of an obstacle along its normal") {
     const SpaceRobot robot = pointing_robot();
     SpaceContactGoal goal;
     goal.obstacle = "wall";
-    const Scene wall = scene_of({box("wall", {4, 1, 4}, {1, 3.32, 3})});  // its face is at y = 2.82
+    const Scene wall = scene_of({turned_box("wall", {4, 1, 4}, {1, 3.32, 3})});  // its face is at y = 2.82
     const FoundTouch found = find_touch(goal, 3, robot, to_the_left(), wall);
     REQUIRE(found.touch);
     const SpaceTouch& touch = *found.touch;
@@ -213,10 +216,11 @@ TEST_CASE("A robot touches the nearest point of an obstacle along its normal") {
     };
     using Catch::Matchers::Contains;
     CHECK_THAT(reason(goal, to_the_left(6 * degree), wall), Contains("points 6 degrees off"));
-    CHECK_THAT(reason(goal, to_the_left(), scene_of({box("wall", {0.15, 1, 4}, {1, 3.32, 3})})), Contains("not flat"));
+    CHECK_THAT(reason(goal, to_the_left(), scene_of({turned_box("wall", {0.15, 1, 4}, {1, 3.32, 3})})),
+               Contains("not flat"));
     CHECK_THAT(reason(goal, to_the_left(), scene_of({{"wall", Cylinder{0.5, 4}, {1, 3.32, 3}, {}}})),
                Contains("not flat"));
-    CHECK_THAT(reason(goal, to_the_left(), scene_of({box("wall", {4, 1, 4}, {1, 2.9, 3})})), Contains("inside"));
+    CHECK_THAT(reason(goal, to_the_left(), scene_of({turned_box("wall", {4, 1, 4}, {1, 2.9, 3})})), Contains("inside"));
     goal.position_m = Vector3{1.05, 2.82, 2.95};
     const FoundTouch wanted = find_touch(goal, 3, robot, to_the_left(), wall);
     REQUIRE(wanted.touch);
@@ -228,7 +232,8 @@ TEST_CASE("A robot touches the nearest point of an obstacle along its normal") {
     // Its top is a box of 0.4 m, 0.08 m up.
     goal = {};
     goal.part = TouchingPart::frame;
-    const FoundTouch top = find_touch(goal, 3, robot, to_the_left(), scene_of({box("deck", {4, 4, 1}, {1, 2, 3.9})}));
+    const FoundTouch top =
+        find_touch(goal, 3, robot, to_the_left(), scene_of({turned_box("deck", {4, 4, 1}, {1, 2, 3.9})}));
     REQUIRE(top.touch);
     CHECK(top.touch->points.size() == 4);
     CHECK(top.touch->normal[2] == Approx(-1));
@@ -239,7 +244,7 @@ TEST_CASE("A robot touches the nearest point of an obstacle along its normal") {
 
 TEST_CASE("A plan hovers for its goals where it stays long enough, in their order or in any") {
     const SpaceRobot robot = pointing_robot();
-    const auto scene = std::make_shared<const Scene>(std::vector<Obstacle>{box("deck", {4, 4, 1}, {0, 0, 3.9})});
+    const auto scene = std::make_shared<const Scene>(std::vector<Obstacle>{turned_box("deck", {4, 4, 1}, {0, 0, 3.9})});
     const auto at_x = [](double x_m) {
         SpaceConfigurationGoal goal;
         goal.x_m = x_m;

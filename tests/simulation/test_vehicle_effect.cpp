@@ -15,9 +15,9 @@ using namespace downwash;
 
 namespace {
 
-constexpr double radius_m = 0.1905;
+constexpr double rotor_radius_m = 0.1905;
 constexpr double reach_m = 0.32;
-constexpr double hub_height_m = 0.06;
+constexpr double rotor_height_m = 0.06;
 constexpr double weight_n = 4.95 * 9.80665;
 
 std::shared_ptr<const FlightModel> model_among(std::vector<Obstacle> obstacles) {
@@ -34,16 +34,16 @@ struct Factor {
 
 /// Cheeseman and Bennett's.
 Factor ground_factor(double z_m) {
-    const double r = radius_m / (4 * z_m);
+    const double r = rotor_radius_m / (4 * z_m);
     const double k = 1 / (1 - r * r);
     return {k, -2 * k * k * r * r / z_m};
 }
 
 /// The fit of the ceiling effect on a rotor `gap_m` below.
 Factor ceiling_factor(double gap_m) {
-    const double r = radius_m / (gap_m + 0.3168 * radius_m);
+    const double r = rotor_radius_m / (gap_m + 0.3168 * rotor_radius_m);
     const double k = 1 / (1 - r * r / 6.924);
-    return {k, 2 * k * k * r * r / 6.924 / (gap_m + 0.3168 * radius_m)};
+    return {k, 2 * k * k * r * r / 6.924 / (gap_m + 0.3168 * rotor_radius_m)};
 }
 
 /// How the effect changes with the pose: a spring, or the opposite of one.
@@ -77,13 +77,13 @@ TEST_CASE("two rotors of four over a plate carry more and push the nose up, unde
     // The plate ends below the centre of mass; the front rotors' discs lie over it one radius high, the others beside
     // it.
     const auto model = model_among({test::box("plate", {4, 4, 1}, {2, 0, 0.5})});
-    const VehicleEffect effect = vehicle_effect(*model, {0, 1 + radius_m - hub_height_m, 0, 0});
+    const VehicleEffect effect = vehicle_effect(*model, {0, 1 + rotor_radius_m - rotor_height_m, 0, 0});
     // K = 1 / (1 - 1/16) = 16/15 for the two in front, each carrying a quarter of the weight.
     CHECK(effect.force_factor == Approx(31.0 / 30).epsilon(1e-9));
     CHECK(effect.pitch_torque_nm == Approx(-reach_m * weight_n / 2 / 15).epsilon(1e-9));  // -0.518 Nm
-    CHECK(effect.pitch_torque_factor == Approx(-reach_m / 30 / radius_m).epsilon(1e-9));
-    const double z_m = 2 - 1.5 * radius_m - hub_height_m;
-    const double torque_nm = reach_m * weight_n / 2 * (ceiling_factor(1.5 * radius_m).value - 1);
+    CHECK(effect.pitch_torque_factor == Approx(-reach_m / 30 / rotor_radius_m).epsilon(1e-9));
+    const double z_m = 2 - 1.5 * rotor_radius_m - rotor_height_m;
+    const double torque_nm = reach_m * weight_n / 2 * (ceiling_factor(1.5 * rotor_radius_m).value - 1);
     for (const double side : {1.0, -1.0}) {
         const auto below = model_among({test::box("slab", {4, 4, 1}, {2 * side, 0, 2.5})});
         CHECK(vehicle_effect(*below, {0, z_m, 0, 0}).pitch_torque_nm == Approx(-side * torque_nm).epsilon(1e-9));
@@ -92,7 +92,7 @@ TEST_CASE("two rotors of four over a plate carry more and push the nose up, unde
 
 TEST_CASE("wide ground carries like a spring and rights the vehicle, a wide ceiling pulls it up and tips it over") {
     const auto check = [](const FlightModel& model, double hub_m, const Factor& k) {
-        const PlanarPose pose{0.4, hub_m - hub_height_m, 0, 0};
+        const PlanarPose pose{0.4, hub_m - rotor_height_m, 0, 0};
         const VehicleEffect effect = vehicle_effect(model, pose);
         const Slopes slopes = slopes_of(model, pose);
         CHECK(effect.force_factor == Approx(k.value).epsilon(1e-9));
@@ -118,7 +118,7 @@ TEST_CASE(
     const auto ground = model_among({{"floor", Box{{80, 80, 1}}, {0, 0, -0.5}, {}}});
     const auto ceiling = model_among({{"roof", Box{{80, 80, 1}}, {0, 0, 5.5}, {}}});
     for (const double pitch : {-0.5, -0.1, 0.0, 0.2, 0.35}) {
-        const auto hub_z_m = [&](double x_m) { return hub_height_m * std::cos(pitch) - x_m * std::sin(pitch); };
+        const auto hub_z_m = [&](double x_m) { return rotor_height_m * std::cos(pitch) - x_m * std::sin(pitch); };
         double over_ground = 0;
         double under_ceiling = 0;
         for (const double x_m : {-reach_m, reach_m}) {
@@ -144,10 +144,10 @@ TEST_CASE("over wide ground the fountain lifts the whole vehicle as its formula 
             return z_m / std::pow(distance_m * distance_m + 4 * z_m * z_m, 1.5);
         };
         const double rotors =
-            radius_m * radius_m * (1 / (16 * z_m * z_m) + image(d_m) + 0.5 * image(std::sqrt(2.0) * d_m));
-        const double body = 2 * radius_m * radius_m * 2 * image(b_m);  // thesis (2.17) with K_b = 2
-        const VehicleEffect effect = vehicle_effect(*model, {0.4, z_m - hub_height_m, 0, 0});
-        const Slopes slopes = slopes_of(*model, {0.4, z_m - hub_height_m, 0, 0});
+            rotor_radius_m * rotor_radius_m * (1 / (16 * z_m * z_m) + image(d_m) + 0.5 * image(std::sqrt(2.0) * d_m));
+        const double body = 2 * rotor_radius_m * rotor_radius_m * 2 * image(b_m);  // thesis (2.17) with K_b = 2
+        const VehicleEffect effect = vehicle_effect(*model, {0.4, z_m - rotor_height_m, 0, 0});
+        const Slopes slopes = slopes_of(*model, {0.4, z_m - rotor_height_m, 0, 0});
         CHECK(effect.force_factor == Approx(1 / (1 - rotors - body)).epsilon(1e-6));
         CHECK(std::abs(effect.pitch_torque_nm) < 1e-9);
         CHECK(slopes.force_n_m < 0);
@@ -179,11 +179,11 @@ TEST_CASE("mirroring scene and vehicle mirrors the parasitic torque and nothing 
 
 TEST_CASE("a vehicle is flyable as long as its outermost disc is") {
     const auto model = model_among({test::box("wall", {1, 8, 8}, {3.5, 0, 0})});  // its face at x = 3
-    const double least_x_m = 3 - (1.3 * radius_m + reach_m);                      // min_distance_radii is 0.3
+    const double least_x_m = 3 - (1.3 * rotor_radius_m + reach_m);                // min_distance_radii is 0.3
     CHECK(is_flyable(*model, {least_x_m - 1e-6, 2, 0, 0}));
     CHECK_FALSE(is_flyable(*model, {least_x_m + 1e-6, 2, 0, 0}));
     // Tilted, its hubs come nearer by 0.32 cos(0.3) + 0.06 sin(0.3).
-    const double tilted_x_m = 3 - (1.3 * radius_m + reach_m * std::cos(0.3) + hub_height_m * std::sin(0.3));
+    const double tilted_x_m = 3 - (1.3 * rotor_radius_m + reach_m * std::cos(0.3) + rotor_height_m * std::sin(0.3));
     CHECK(is_flyable(*model, {tilted_x_m - 1e-6, 2, 0.3, 0}));
     CHECK_FALSE(is_flyable(*model, {tilted_x_m + 1e-6, 2, 0.3, 0}));
 }
@@ -195,10 +195,10 @@ TEST_CASE("A wall pushes a hovering vehicle away and pulls the side towards it d
     const auto model = make_flight_model(problem);
     const PlanarPose pose{0.3, 2, 0, -std::acos(-1.0) / 2};
     // The wall is 0.7 m from the centre: 0.38 m from the nearest hub.
-    const double nearness = std::exp(-(0.7 - reach_m - radius_m) / (0.5 * radius_m));
+    const double nearness = std::exp(-(0.7 - reach_m - rotor_radius_m) / (0.5 * rotor_radius_m));
     const VehicleEffect effect = vehicle_effect(*model, pose);
     CHECK(effect.force_factor == Approx(1).margin(1e-12));
-    CHECK(effect.pitch_torque_nm == Approx(0.04 * radius_m * nearness * weight_n).epsilon(1e-4));
+    CHECK(effect.pitch_torque_nm == Approx(0.04 * rotor_radius_m * nearness * weight_n).epsilon(1e-4));
 
     const PlantModel& plant = model->tick().plant;
     const FlightState state = model->state_at(pose);
@@ -220,6 +220,6 @@ TEST_CASE("A wall pushes a hovering vehicle away and pulls the side towards it d
     dynamics::inverse_dynamics(plant, motion.equations, without, less);
     CHECK(more[0] - less[0] == Approx(-0.02 * nearness * weight_n).epsilon(1e-4));
     CHECK(more[1] - less[1] == Approx(0).margin(1e-9));
-    CHECK(more[2] - less[2] == Approx(0.04 * radius_m * nearness * weight_n).epsilon(1e-4));
+    CHECK(more[2] - less[2] == Approx(0.04 * rotor_radius_m * nearness * weight_n).epsilon(1e-4));
     CHECK(more[3] - less[3] == Approx(0).margin(1e-9));
 }
