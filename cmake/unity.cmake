@@ -2,6 +2,8 @@
 # change of one source it compiles those beside it again, so a folder to work in may have it off.
 
 option(DOWNWASH_UNITY "Compile the sources of a module several at a time: faster from nothing, slower after a change" OFF)
+set(DOWNWASH_UNITY_BATCH 10 CACHE STRING "How many sources of a module are compiled at a time, at most")
+mark_as_advanced(DOWNWASH_UNITY_BATCH)
 
 # Sets OUT to what a source declares at the left margin, as far as it could meet the same in another source: names of types,
 # constants and variables, functions with the types of their parameters.
@@ -22,7 +24,7 @@ function(downwash_names_in OUT SOURCE)
   set(${OUT} ${names} PARENT_SCOPE)
 endfunction()
 
-# Each source goes into the first batch of at most ten in which nothing is called as something in it. Those with compile options
+# Each source goes into the first batch of at most DOWNWASH_UNITY_BATCH in which nothing is called as something in it. Those with compile options
 # or definitions of their own are compiled alone, as are those with SKIP_UNITY_BUILD_INCLUSION.
 function(downwash_unite TARGET)
   if(NOT DOWNWASH_UNITY)
@@ -40,7 +42,7 @@ function(downwash_unite TARGET)
       list(REMOVE_DUPLICATES all)
       list(LENGTH all after)
       list(LENGTH sources_${batch} size)
-      if(size LESS 10 AND before EQUAL after)
+      if(size LESS DOWNWASH_UNITY_BATCH AND before EQUAL after)
         set(group ${batch})
         break()
       endif()
