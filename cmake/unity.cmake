@@ -24,8 +24,8 @@ function(downwash_names_in OUT SOURCE)
   set(${OUT} ${names} PARENT_SCOPE)
 endfunction()
 
-# Each source goes into the first batch of at most DOWNWASH_UNITY_BATCH in which nothing is called as something in it. Those with compile options
-# or definitions of their own are compiled alone, as are those with SKIP_UNITY_BUILD_INCLUSION.
+# Each source goes into the first batch of at most DOWNWASH_UNITY_BATCH in which nothing is called as something in it. Those with
+# compile options or definitions of their own are compiled alone, as are those with SKIP_UNITY_BUILD_INCLUSION.
 function(downwash_unite TARGET)
   if(NOT DOWNWASH_UNITY)
     return()
