@@ -66,7 +66,7 @@ struct Solid {
     Vector3d half_m;
 };
 
-using Part = std::variant<Triangle, Solid>;
+using ShapePart = std::variant<Triangle, Solid>;
 
 /// Where a vertical line is in a part: nowhere, if low is above high.
 struct Heights {
@@ -113,7 +113,7 @@ Heights heights(const Solid& solid, double x_m, double y_m) {
 }  // namespace
 
 struct VerticalRays::Parts {
-    std::vector<Part> parts;
+    std::vector<ShapePart> parts;
     std::vector<std::array<double, 4>> extents_m;  ///< of each part: from x, y to x, y
     std::vector<std::uint32_t> wide;               ///< parts over so many columns that every ray asks them
     double x_low_m = 0, y_low_m = 0, column_m = 1;
@@ -121,7 +121,7 @@ struct VerticalRays::Parts {
     std::vector<std::uint32_t> starts;      ///< of each column in `in_columns`; behind the last one, the count
     std::vector<std::uint32_t> in_columns;  ///< parts, column by column
 
-    void add(const Part& part, const Vector3d& low_m, const Vector3d& high_m) {
+    void add(const ShapePart& part, const Vector3d& low_m, const Vector3d& high_m) {
         parts.push_back(part);
         extents_m.push_back({low_m.x(), low_m.y(), high_m.x(), high_m.y()});
     }

@@ -18,7 +18,7 @@
 namespace downwash::cli {
 namespace {
 
-std::string counted(const std::pair<const std::string, std::uint64_t>& cause) {
+std::string counted_cause(const std::pair<const std::string, std::uint64_t>& cause) {
     return fmt::format("{} {}", cause.first, cause.second);
 }
 
@@ -213,7 +213,7 @@ std::string certificate_rows(const Certificate& certificate, bool is_of_part, co
         table_row("", "clearance " + millimetres(certificate.clearance_m.p01) + " or more in 99 % of the worlds, " +
                           millimetres(certificate.clearance_m.p50) + " in half of them");
     if (!certificate.causes.empty()) {
-        text += table_row("", joined(certificate.causes, ", ", counted) + "; to see one of them:");
+        text += table_row("", joined(certificate.causes, ", ", counted_cause) + "; to see one of them:");
         text +=
             table_row("", fmt::format("downwash execute {} --plan {} --world {}", shell_word(folder / "effective.yaml"),
                                       shell_word(folder), certificate.worst.front().world));

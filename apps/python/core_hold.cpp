@@ -18,12 +18,12 @@ namespace downwash::python {
 namespace {
 
 /// The answer for one point.
-struct Answer {
+struct HoldAnswer {
     HoverAnalysis analysis;
     VehicleEffect effect;
 };
 
-NumberTable table_of(const std::vector<Answer>& answers, const Points& points) {
+NumberTable table_of(const std::vector<HoldAnswer>& answers, const Points& points) {
     NumberTable table;
     table.names = {"x_m",
                    "z_m",
@@ -85,8 +85,8 @@ py::tuple hold(const CoreProblem& of, const Points& points, const std::optional<
     const double arm_rad = arm_deg ? *arm_deg / degrees_per_radian : of.problem().start.at[plane::arm];
     require_finite(points, count, arm_rad);
     const double* at = points.data();
-    const std::vector<Answer> answers = interruptible(py::none(), [&](Attendance& attendance) {
-        std::vector<Answer> found(count);
+    const std::vector<HoldAnswer> answers = interruptible(py::none(), [&](Attendance& attendance) {
+        std::vector<HoldAnswer> found(count);
         run_parallel(count, thread_count(threads), [&, token = attendance.token()](std::size_t i) {
             if (!token.stop_requested()) {
                 const double x_m = at[2 * i], z_m = at[2 * i + 1];
@@ -96,7 +96,7 @@ py::tuple hold(const CoreProblem& of, const Points& points, const std::optional<
         return found;
     });
     py::list verdicts, limits;
-    for (const Answer& answer : answers) {
+    for (const HoldAnswer& answer : answers) {
         verdicts.append(name_of(answer.analysis.verdict));
         limits.append(name_of(answer.analysis.trim.limit));
     }

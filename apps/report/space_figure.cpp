@@ -35,21 +35,21 @@ struct Layout {
     double legend_middle = 0, legend_top = 0, legend_width = 0;
 };
 
-constexpr double left_px = 80, right_px = 24, gap_px = 46, below_px = 62, titles_px = 70, view_name_px = 24;
+constexpr double left_px = 80, right_px = 24, between_px = 46, below_px = 62, titles_px = 70, view_name_px = 24;
 
 Layout layout_of(const SpaceFigure& figure, double width_px, const Legend& legend) {
     constexpr double max_height = 1.15, least_legend_px = 330;
     const Bounds &top = figure.top.extent, &front = figure.front.extent;
     const double x_m = top.x_high_m - top.x_low_m, y_m = top.z_high_m - top.z_low_m,
                  z_m = front.z_high_m - front.z_low_m;
-    const double room_px = width_px - left_px - right_px - gap_px;
+    const double room_px = width_px - left_px - right_px - between_px;
     Layout layout;
     layout.px_per_m = std::min(room_px / (x_m + y_m), max_height * width_px / (y_m + z_m));
     const double x_px = x_m * layout.px_per_m, y_px = y_m * layout.px_per_m, z_px = z_m * layout.px_per_m;
-    const double left = left_px + (room_px - x_px - y_px) / 2, middle = left + x_px + gap_px;
+    const double left = left_px + (room_px - x_px - y_px) / 2, middle = left + x_px + between_px;
     layout.side = {left, left + x_px, below_px, below_px + z_px};
     layout.front = {middle, middle + y_px, below_px, below_px + z_px};
-    const double upper = layout.side.top + gap_px + view_name_px;
+    const double upper = layout.side.top + between_px + view_name_px;
     layout.top = {left, left + x_px, upper, upper + y_px};
     const bool is_beside = y_px >= least_legend_px && legend.height_px(y_px) <= y_px;
     const double full_px = width_px - left_px - right_px;
