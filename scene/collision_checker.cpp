@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t arm_frame = 1;
 
-bool is_finite(const PlanarPose& pose) {
+bool has_finite_pose(const PlanarPose& pose) {
     return std::isfinite(pose.x_m + pose.z_m + pose.pitch_rad + pose.arm_rad + pose.lateral_m);
 }
 
@@ -152,7 +152,7 @@ CollisionCheckerKind CollisionChecker::kind() const noexcept {
 }
 
 bool CollisionChecker::is_nearer_than(const PlanarPose& pose, double margin_m) const {
-    if (!is_finite(pose)) {
+    if (!has_finite_pose(pose)) {
         return true;
     }
     if (impl_->kind == CollisionCheckerKind::fcl) {
@@ -172,7 +172,7 @@ double CollisionChecker::robot_reach_m() const noexcept {
 }
 
 double CollisionChecker::clearance_m(const PlanarPose& pose) const {
-    if (!is_finite(pose)) {
+    if (!has_finite_pose(pose)) {
         return -infinity;
     }
     if (impl_->kind == CollisionCheckerKind::fcl) {
@@ -182,7 +182,7 @@ double CollisionChecker::clearance_m(const PlanarPose& pose) const {
 }
 
 std::optional<std::size_t> CollisionChecker::nearest_obstacle(const PlanarPose& pose, double within_m) const {
-    if (!is_finite(pose)) {
+    if (!has_finite_pose(pose)) {
         return std::nullopt;
     }
     return nearest_of(impl_->solids, within_m, [&](const auto& visit) { impl_->any_piece(pose, visit); });
