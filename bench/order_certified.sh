@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # How often targets in any order get a certified flight beside the same targets as a list, and writes
 # bench/results/order_certified.md. Three and a half hours at most; close everything else first. Options go to the program:
-# --scenes 5 --times 10,30, and --file PROBLEM for another problem with targets in any order.
+# --first ends each search with the first plan that counts, which takes a fraction of the time and tells all but the final
+# costs; --scenes 5 --times 10,30, and --file PROBLEM for another problem with targets in any order.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
