@@ -59,7 +59,7 @@ double Obstacles::clearance_m(const PlanarPose& pose) const {
     const Eigen::Vector3d along = s.direction(std::cos(angle), -std::sin(angle));
     const Eigen::Vector3d joint = body * Eigen::Vector3d(s.robot.joint_x_m, 0, s.robot.joint_z_m);
     Pose arm = moved(joint + 0.5 * s.robot.arm_length_m * along);
-    arm.linear() = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), along).toRotationMatrix();
+    arm.linear() = turn_from_z(along).toRotationMatrix();
     return s.obstacles.distance_m(s.arm, arm, least_m);
 }
 

@@ -24,4 +24,8 @@ inline Eigen::Isometry3d pose_of(const Obstacle& obstacle) {
     return pose;
 }
 
+/// The rotation by the shortest way that turns the z axis into a direction, of any length but zero. Not inline: it
+/// takes the compiler six seconds, and many sources call it.
+[[nodiscard]] Eigen::Quaterniond turn_from_z(const Eigen::Vector3d& direction);
+
 }  // namespace downwash::judge

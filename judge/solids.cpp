@@ -37,7 +37,7 @@ struct ShapeReader {
     void operator()(const Sphere& sphere) const { add(std::make_shared<fcl::Sphered>(sphere.radius_m), pose); }
     void operator()(const Cylinder& cylinder) const {
         Pose turned = pose;
-        turned.rotate(Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), vector_of(cylinder.axis)));
+        turned.rotate(turn_from_z(vector_of(cylinder.axis)));
         add(std::make_shared<fcl::Cylinderd>(cylinder.radius_m, cylinder.length_m), turned);
     }
     void operator()(const Mesh& mesh) const {

@@ -42,7 +42,7 @@ struct Reader {
         const Vector3d to = vector_of(capsule.to_m);
         Pose pose = moved(center_m + 0.5 * (from + to));
         if (from != to) {
-            pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), to - from).toRotationMatrix();
+            pose.linear() = turn_from_z(to - from).toRotationMatrix();
         }
         parts.emplace_back(capsule_of(capsule.radius_m, (to - from).norm()), pose);
         reach_m =
@@ -166,7 +166,7 @@ bool SpaceObstacles::line_keeps(double distance_m, const Vector3d& from_m, const
     const Vector3d line = to_m - from_m;
     Pose pose = moved(0.5 * (from_m + to_m));
     if (!line.isZero(0)) {
-        pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), line).toRotationMatrix();
+        pose.linear() = turn_from_z(line).toRotationMatrix();
     }
     return solids_->obstacles.distance_m(capsule_of(distance_m, line.norm()), pose, infinity) > 0;
 }
@@ -176,7 +176,7 @@ double SpaceObstacles::reach_beyond_m(const std::vector<BodyFrame>& frames, std:
     // What the solids leave of the gap to a plate in front of them.
     constexpr double ahead_m = 1, width_m = 4, thickness_m = 0.2;
     Pose pose = moved(point_m + (ahead_m + 0.5 * thickness_m) * direction);
-    pose.linear() = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), direction).toRotationMatrix();
+    pose.linear() = turn_from_z(direction).toRotationMatrix();
     std::vector<Part> plate;
     read_shape(Box{{width_m, width_m, thickness_m}}, pose,
                [&](Geometry geometry, const Pose& at) { plate.emplace_back(std::move(geometry), at); });

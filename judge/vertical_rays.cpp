@@ -140,7 +140,7 @@ struct PartsOf {
     void operator()(const Sphere& sphere) const { add(Solid::Kind::ball, pose, Vector3d::Constant(sphere.radius_m)); }
     void operator()(const Cylinder& cylinder) const {
         Eigen::Isometry3d turned = pose;
-        turned.rotate(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), vector_of(cylinder.axis)));
+        turned.rotate(turn_from_z(vector_of(cylinder.axis)));
         add(Solid::Kind::cylinder, turned, {cylinder.radius_m, cylinder.radius_m, 0.5 * cylinder.length_m});
     }
     void operator()(const Mesh& mesh) const {
