@@ -235,7 +235,10 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
             }
             free_m = free_motion_m_ - moved_m;
         }
-        if (const VolumeMap* const map = setting_->setup.volumes.rotor) {
+        const VolumeMap* const map =
+            setting_->setup.volumes != nullptr ? setting_->setup.volumes->rotor.get() : nullptr;
+        SpaceEffect* const effect = lanes_->effect[0];
+        if (map != nullptr || effect != nullptr) {
             const dynamics::SpaceState<double, n> now = plant();
             const dynamics::LaneRotation<double> attitude = dynamics::rotation_of(now.q + 3);
             const SpaceModel<n>& nominal = model_->tick.nominal.plant;
@@ -243,6 +246,13 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
                 const auto at =
                     nominal_place(world_.numbers, dynamics::LaneVector<double>{now.q[0], now.q[1], now.q[2]} +
                                                       attitude * nominal.rotor[i].position_m);
+                if (effect != nullptr) {
+                    if (!effect->is_flyable(i, at)) {
+                        return Rejection::flyable_area;
+                    }
+                    free_m = -1;  // it does not say how far the end of the area is
+                    continue;
+                }
                 const Vector3 hub_m{at.x, at.y, at.z};
                 const double margin_m = map->margin_m(hub_m);
                 if (margin_m <= 0 && !map->is_flyable(hub_m)) {
