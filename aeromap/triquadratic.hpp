@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 namespace downwash {
@@ -55,6 +56,27 @@ inline double value_at(const Triquadratic& coefficients, const std::array<double
     };
     const Row row = in_x(0) + y * (in_x(3) + y * in_x(6));
     return row[0] + x * (row[1] + x * row[2]);
+}
+
+/// How far a polynomial varies: 0 not at all, 1 along z alone, 2 along y, too, 3 along x, too.
+[[gnu::always_inline]] inline int varying_axes(const Triquadratic& coefficients) {
+    typedef std::uint32_t Row __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
+    const auto row = [&](std::size_t first) __attribute__((always_inline)) {
+        Row bits;
+        std::memcpy(&bits, &coefficients[first], sizeof bits);
+        return bits;
+    };
+    constexpr std::uint32_t all_but_sign = 0x7fffffff;
+    const Row of_z = row(9) | row(18);
+    const Row of_y = row(3) | row(6) | row(12) | row(15) | row(21) | row(24);
+    const Row any = row(0) | of_y | of_z;
+    if (((any[1] | any[2]) & all_but_sign) != 0) {
+        return 3;
+    }
+    if ((of_y[0] & all_but_sign) != 0) {
+        return 2;
+    }
+    return (of_z[0] & all_but_sign) != 0 ? 1 : 0;
 }
 
 /// A parabola in z from the coefficients 0, 9 and 18 of a Triquadratic, and products of parabolas in y and z.

@@ -26,9 +26,8 @@ struct alignas(lanes < 8 ? sizeof(double) * lanes : 64) VolumePatches {
         }
     }
 
-    double low[3][lanes];  ///< of the box, in cells; infinite: the lane is in none
+    double low[3][lanes];  ///< corner of the box, in boxes of its size; infinite: the lane is in none
     double boxes_per_cell[3][lanes];
-    double edge_m[3][lanes] = {};
     double all[coefficients][lanes] = {};    ///< 0 beyond the lane's level
     double above[coefficients][lanes] = {};  ///< counts for `is_both` alone
     double margin_m[lanes] = {};
@@ -76,7 +75,8 @@ class VolumeLookUp {
         const Position now = entered(x_m, y_m, z_m);
         T squares(0);
         for (int axis = 0; axis < 3; ++axis) {
-            const T away_m = (now.part[axis] - T(0.5)) * load(patches_.edge_m[axis]);
+            const T edge_m = T(1) / (load(patches_.boxes_per_cell[axis]) * T(view_.cells_per_m[axis]));
+            const T away_m = (now.part[axis] - T(0.5)) * edge_m;
             squares = squares + away_m * away_m;
         }
         return margin_at(load(patches_.margin_m), lane::sqrt(squares));
@@ -117,7 +117,8 @@ class VolumeLookUp {
         Position at;
         for (int axis = 0; axis < 3; ++axis) {
             at.u[axis] = u[axis];
-            at.part[axis] = (u[axis] - load(patches_.low[axis])) * load(patches_.boxes_per_cell[axis]);
+            // Exact in the box: its edge is a power of two of a cell's.
+            at.part[axis] = u[axis] * load(patches_.boxes_per_cell[axis]) - load(patches_.low[axis]);
         }
         return at;
     }
@@ -167,12 +168,9 @@ class VolumeLookUp {
     void enter(const double (&u)[3], int lane) {
         const VolumeBox box = box_around(view_, u);
         for (int axis = 0; axis < 3; ++axis) {
-            // Exact: the box begins at a multiple of its edge.
             patches_.low[axis][lane] =
-                static_cast<double>(static_cast<std::uint32_t>(u[axis] * box.boxes_per_cell[axis])) /
-                box.boxes_per_cell[axis];
+                static_cast<double>(static_cast<std::uint32_t>(u[axis] * box.boxes_per_cell[axis]));
             patches_.boxes_per_cell[axis][lane] = box.boxes_per_cell[axis];
-            patches_.edge_m[axis][lane] = 1 / (box.boxes_per_cell[axis] * view_.cells_per_m[axis]);
         }
         patches_.is_outside[lane] = 0;
         patches_.margin_m[lane] = double{box.margin_m};
@@ -184,7 +182,6 @@ class VolumeLookUp {
         for (int axis = 0; axis < 3; ++axis) {
             patches_.low[axis][lane] = HUGE_VAL;
             patches_.boxes_per_cell[axis][lane] = 1;
-            patches_.edge_m[axis][lane] = 0;
         }
         patches_.is_outside[lane] = 1;
         patches_.margin_m[lane] = 0;
@@ -215,17 +212,7 @@ class VolumeLookUp {
             return double{(*polynomial)[static_cast<std::size_t>(order[i])]} + 0.0;
         };
         of[0][lane] = polynomial != nullptr ? number(0) : view_.calm_value;
-        int level = polynomial != nullptr ? levels : 0;
-        const auto is_zero = [&](int which) {
-            double sum = 0;
-            for (int i = begin[which]; i < begin[which + 1]; ++i) {
-                sum += std::fabs(number(i));
-            }
-            return sum == 0;
-        };
-        while (level > 0 && is_zero(level - 1)) {
-            --level;
-        }
+        const int level = polynomial != nullptr ? varying_axes(*polynomial) : 0;
         for (int which = 0; which < levels; ++which) {
             const bool varies = which < level;
             const bool has_old = (varying[which] >> static_cast<unsigned int>(lane) & 1U) != 0;
