@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "downwash/aeromap/disc_average.hpp"
+#include "downwash/effects/sided_factor.hpp"
 
 namespace downwash {
 RotorImages::RotorImages(double radius_m, double max_factor, const RotorNeighbours& neighbours)

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 
 namespace downwash {
@@ -24,9 +25,11 @@ inline Triquadratic triquadratic_through(std::array<double, 27> values) {
                 double& low = values[n];
                 double& middle = values[n + stride];
                 double& high = values[n + 2 * stride];
-                const double slope = 4 * middle - 3 * low - high;
-                high = 2 * (low + high) - 4 * middle;
-                middle = slope;
+                // Of equal values exactly 0: what does not change along an axis has no part there.
+                const double to_middle = middle - low;
+                const double to_high = high - low;
+                middle = 4 * to_middle - to_high;
+                high = 2 * (to_high - 2 * to_middle);
             }
         }
     }
@@ -55,14 +58,47 @@ inline double value_at(const Triquadratic& coefficients, const std::array<double
     return row[0] + x * (row[1] + x * row[2]);
 }
 
+/// How far a polynomial varies: 0 not at all, 1 along z alone, 2 along y, too, 3 along x, too.
+[[gnu::always_inline]] inline int varying_axes(const Triquadratic& coefficients) {
+    typedef std::uint32_t Row __attribute__((vector_size(16)));  // NOLINT(modernize-use-using)
+    const auto row = [&](std::size_t first) __attribute__((always_inline)) {
+        Row bits;
+        std::memcpy(&bits, &coefficients[first], sizeof bits);
+        return bits;
+    };
+    constexpr std::uint32_t all_but_sign = 0x7fffffff;
+    const Row of_z = row(9) | row(18);
+    const Row of_y = row(3) | row(6) | row(12) | row(15) | row(21) | row(24);
+    const Row any = row(0) | of_y | of_z;
+    if (((any[1] | any[2]) & all_but_sign) != 0) {
+        return 3;
+    }
+    if ((of_y[0] & all_but_sign) != 0) {
+        return 2;
+    }
+    return (of_z[0] & all_but_sign) != 0 ? 1 : 0;
+}
+
+/// A parabola in z from the coefficients 0, 9 and 18 of a Triquadratic, and products of parabolas in y and z.
+template <class T, class Coefficient>
+T parabola_at(const Coefficient& coefficient, const T& z) {
+    return coefficient(0) + z * (coefficient(9) + z * coefficient(18));
+}
+template <class T, class Coefficient>
+T biquadratic_at(const Coefficient& coefficient, const T& y, const T& z) {
+    const auto of_power = [&](int power) {
+        return parabola_at([&](int number) { return coefficient(3 * power + number); }, z);
+    };
+    return of_power(0) + y * (of_power(1) + y * of_power(2));
+}
+
 /// The same in double, from 27 coefficients. One template over the lane type: the lanes' coefficients may differ.
 /// @param coefficient gives that of a number
 template <class T, class Coefficient>
 T triquadratic_at(const Coefficient& coefficient, const T& x, const T& y, const T& z) {
-    const auto in_x = [&](int first) {
-        return coefficient(first) + z * (coefficient(first + 9) + z * coefficient(first + 18));
+    const auto of_power = [&](int power) {
+        return biquadratic_at([&](int number) { return coefficient(power + number); }, y, z);
     };
-    const auto of_power = [&](int power) { return in_x(power) + y * (in_x(power + 3) + y * in_x(power + 6)); };
     return of_power(0) + x * (of_power(1) + x * of_power(2));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 #include "downwash/aeromap/volume_view.hpp"
 #include "downwash/base/lane_math.hpp"
@@ -9,29 +10,62 @@
 
 namespace downwash {
 
-/// What a volume says along the flights of all lanes of one rotor, or of the body, or of walls. It keeps the box in
-/// which each lane is, which a flight leaves only every few ticks. In double, and so within 1e-6 of VolumeMap; the same
-/// in every lane type to the last bit.
-template <class T>
-class VolumePatches {
- public:
-    /// @pre the volume outlives the object
-    explicit VolumePatches(const VolumeView& view) : view_(view) {
-        for (int lane = 0; lane < width; ++lane) {
-            leave(lane);
+/// The box of a volume in which each of so many lanes was last, as numbers to compute with: [..][lane]. A flight leaves
+/// its box only every few ticks. What a look-up says does not depend on them, so lanes may change hands.
+template <int lanes>
+struct alignas(lanes < 8 ? sizeof(double) * lanes : 64) VolumePatches {
+    static constexpr int coefficients = 27;
+    static constexpr int levels = 3;
+
+    VolumePatches() {
+        for (int lane = 0; lane < lanes; ++lane) {
+            for (int axis = 0; axis < 3; ++axis) {
+                low[axis][lane] = HUGE_VAL;
+                boxes_per_cell[axis][lane] = 1;
+            }
         }
     }
+
+    double low[3][lanes];  ///< corner of the box, in boxes of its size; infinite: the lane is in none
+    double boxes_per_cell[3][lanes];
+    double all[coefficients][lanes] = {};    ///< 0 beyond the lane's level
+    double above[coefficients][lanes] = {};  ///< counts for `is_both` alone
+    double margin_m[lanes] = {};
+    double is_below[lanes] = {};    ///< 1 where surfaces above do not matter
+    double is_both[lanes] = {};     ///< 1 where those above are neither nothing nor all
+    double is_outside[lanes] = {};  ///< 1 where a lane is outside the volume
+
+    // Lanes as bits.
+    unsigned int below = 0, both = 0;         ///< `is_below`, `is_both`
+    unsigned int direct = 0;                  ///< where there is no polynomial
+    unsigned int varying[levels] = {};        ///< along z; along lateral, too; along x, too
+    unsigned int above_varying[levels] = {};  ///< the same of `above`
+};
+
+/// Looks up in a volume for the neighbouring lanes of a T. In double, and so within 1e-6 of VolumeMap; the same in
+/// every lane type to the last bit.
+template <class T, int lanes = lane::width<T>>
+class VolumeLookUp {
+ public:
+    /// @param patches those of a rotor, of the body or of walls   @pre all outlive the object
+    VolumeLookUp(const VolumeView& view, VolumePatches<lanes>& patches, int first_lane = 0)
+        : view_(view), patches_(patches), first_(first_lane) {}
 
     /// VolumeMap::sided_factor() at the world positions of hubs.
     SidedFactor<T> at(const T& x_m, const T& y_m, const T& z_m) {
         const Position now = entered(x_m, y_m, z_m);
-        SidedFactor<T> result{polynomial(all_, now), polynomial(above_, now)};
-        for (unsigned int outside = lane::bits_of(load(is_direct_) > T(0)); outside != 0; outside &= outside - 1) {
-            const int lane = __builtin_ctz(outside);
-            const SidedFactor<double> there =
-                direct_value(view_, lane::number_in(x_m, lane), lane::number_in(y_m, lane), lane::number_in(z_m, lane));
-            lane::set_number(result.all, lane, there.all);
-            lane::set_number(result.above, lane, there.above);
+        SidedFactor<T> result;
+        result.all = polynomial(patches_.all, patches_.varying, now);
+        result.above = result.all;
+        if (has_lane(patches_.below)) {
+            result.above = lane::select(load(patches_.is_below) > T(0), T(view_.calm_value), result.above);
+        }
+        if (has_lane(patches_.both)) {
+            result.above = lane::select(load(patches_.is_both) > T(0),
+                                        polynomial(patches_.above, patches_.above_varying, now), result.above);
+        }
+        if (has_lane(patches_.direct)) {
+            evaluate(x_m, y_m, z_m, result);
         }
         return result;
     }
@@ -41,32 +75,50 @@ class VolumePatches {
         const Position now = entered(x_m, y_m, z_m);
         T squares(0);
         for (int axis = 0; axis < 3; ++axis) {
-            const T away_m = (now.part[axis] - T(0.5)) * load(edge_m_[axis]);
+            const T edge_m = T(1) / (load(patches_.boxes_per_cell[axis]) * T(view_.cells_per_m[axis]));
+            const T away_m = (now.part[axis] - T(0.5)) * edge_m;
             squares = squares + away_m * away_m;
         }
-        return margin_at(load(margin_m_), lane::sqrt(squares));
+        return margin_at(load(patches_.margin_m), lane::sqrt(squares));
     }
 
  private:
     static constexpr int width = lane::width<T>;
-    static constexpr int coefficients = 27;
+    static constexpr int coefficients = VolumePatches<lanes>::coefficients;
+    static constexpr int levels = VolumePatches<lanes>::levels;
+    static constexpr unsigned int every_lane = (1U << static_cast<unsigned int>(width)) - 1;
 
     struct Position {
         T u[3];     ///< in cells
         T part[3];  ///< of the way through the lane's box
     };
 
-    static T load(const double (&numbers)[width]) { return lane::load<T>(numbers); }
+    [[nodiscard]] T load(const double (&numbers)[lanes]) const { return lane::load<T>(numbers + first_); }
+    /// Whether bits of all lanes have one of ours.
+    [[nodiscard]] bool has_lane(unsigned int bits) const {
+        return (bits >> static_cast<unsigned int>(first_) & every_lane) != 0;
+    }
 
-    static T polynomial(const double (&of)[coefficients][width], const Position& at) {
-        return triquadratic_at([&of](int number) { return load(of[number]); }, at.part[0], at.part[1], at.part[2]);
+    /// The same for a lane of a lower level as if it stood alone: what is 0 adds nothing.
+    [[nodiscard]] T polynomial(const double (&of)[coefficients][lanes], const unsigned int (&varying)[levels],
+                               const Position& at) const {
+        const auto [x, y, z] = at.part;
+        const auto coefficient = [&](int number) { return load(of[number]); };
+        if (!has_lane(varying[0])) {
+            return coefficient(0);
+        }
+        if (!has_lane(varying[1])) {
+            return parabola_at(coefficient, z);
+        }
+        return has_lane(varying[2]) ? triquadratic_at(coefficient, x, y, z) : biquadratic_at(coefficient, y, z);
     }
 
     [[nodiscard]] Position in_boxes(const T (&u)[3]) const {
         Position at;
         for (int axis = 0; axis < 3; ++axis) {
             at.u[axis] = u[axis];
-            at.part[axis] = (u[axis] - load(low_[axis])) * load(boxes_per_cell_[axis]);
+            // Exact in the box: its edge is a power of two of a cell's.
+            at.part[axis] = u[axis] * load(patches_.boxes_per_cell[axis]) - load(patches_.low[axis]);
         }
         return at;
     }
@@ -89,77 +141,96 @@ class VolumePatches {
             const double u[3] = {lane::number_in(at.u[0], lane), lane::number_in(at.u[1], lane),
                                  lane::number_in(at.u[2], lane)};
             if (view_.contains(u)) {
-                enter(u, lane);
+                enter(u, first_ + lane);
             } else {
-                leave(lane);
+                leave(first_ + lane);
             }
         }
         Position now = in_boxes(at.u);
         // A lane outside has an infinite part, which no polynomial may meet.
-        for (int axis = 0; axis < 3; ++axis) {
-            const T is_in = lane::select(load(is_outside_) > T(0), T(0), T(1));
-            now.part[axis] = lane::select(is_in > T(0), now.part[axis], T(0.5));
+        for (T& part : now.part) {
+            part = lane::select(load(patches_.is_outside) > T(0), T(0.5), part);
         }
         return now;
     }
 
+    [[gnu::noinline]] void evaluate(const T& x_m, const T& y_m, const T& z_m, SidedFactor<T>& result) const {
+        unsigned int direct = patches_.direct >> static_cast<unsigned int>(first_) & every_lane;
+        for (; direct != 0; direct &= direct - 1) {
+            const int lane = __builtin_ctz(direct);
+            const SidedFactor<double> there =
+                direct_value(view_, lane::number_in(x_m, lane), lane::number_in(y_m, lane), lane::number_in(z_m, lane));
+            lane::set_number(result.all, lane, there.all);
+            lane::set_number(result.above, lane, there.above);
+        }
+    }
+
     void enter(const double (&u)[3], int lane) {
         const VolumeBox box = box_around(view_, u);
-        const VolumeNodeKind kind = box.kind;
         for (int axis = 0; axis < 3; ++axis) {
-            // Exact: the box begins at a multiple of its edge.
-            low_[axis][lane] = static_cast<double>(static_cast<std::uint32_t>(u[axis] * box.boxes_per_cell[axis])) /
-                               box.boxes_per_cell[axis];
-            boxes_per_cell_[axis][lane] = box.boxes_per_cell[axis];
-            edge_m_[axis][lane] = 1 / (box.boxes_per_cell[axis] * view_.cells_per_m[axis]);
+            patches_.low[axis][lane] =
+                static_cast<double>(static_cast<std::uint32_t>(u[axis] * box.boxes_per_cell[axis]));
+            patches_.boxes_per_cell[axis][lane] = box.boxes_per_cell[axis];
         }
-        is_outside_[lane] = 0;
-        is_direct_[lane] = kind == VolumeNodeKind::direct ? 1 : 0;
-        margin_m_[lane] = double{box.margin_m};
-        fill(all_, lane, view_.calm_value);
-        fill(above_, lane, view_.calm_value);
-        if (kind == VolumeNodeKind::calm || kind == VolumeNodeKind::direct) {
-            return;
-        }
-        const std::size_t of_above = kind == VolumeNodeKind::both ? 1 : 0;
-        for (int number = 0; number < coefficients; ++number) {
-            const auto i = static_cast<std::size_t>(number);
-            all_[number][lane] = double{box.polynomials[0][i]};
-            if (kind != VolumeNodeKind::below) {
-                above_[number][lane] = double{box.polynomials[of_above][i]};
-            }
-        }
+        patches_.is_outside[lane] = 0;
+        patches_.margin_m[lane] = double{box.margin_m};
+        take(box.kind, box.polynomials, lane);
     }
 
     /// Outside the volume everything is evaluated directly, and the next position looked up again.
     void leave(int lane) {
         for (int axis = 0; axis < 3; ++axis) {
-            low_[axis][lane] = HUGE_VAL;
-            boxes_per_cell_[axis][lane] = 1;
-            edge_m_[axis][lane] = 0;
+            patches_.low[axis][lane] = HUGE_VAL;
+            patches_.boxes_per_cell[axis][lane] = 1;
         }
-        is_outside_[lane] = 1;
-        is_direct_[lane] = 1;
-        margin_m_[lane] = 0;
-        fill(all_, lane, view_.calm_value);
-        fill(above_, lane, view_.calm_value);
+        patches_.is_outside[lane] = 1;
+        patches_.margin_m[lane] = 0;
+        take(VolumeNodeKind::direct, nullptr, lane);
     }
 
-    static void fill(double (&of)[coefficients][width], int lane, double value) {
-        for (int number = 0; number < coefficients; ++number) {
-            of[number][lane] = number == 0 ? value : 0;
+    void take(VolumeNodeKind kind, const Triquadratic* polynomials, int lane) {
+        const bool is_constant = kind == VolumeNodeKind::calm || kind == VolumeNodeKind::direct;
+        const bool is_both = kind == VolumeNodeKind::both;
+        put(kind == VolumeNodeKind::direct, lane, patches_.direct);
+        put(kind == VolumeNodeKind::below, lane, patches_.below);
+        put(is_both, lane, patches_.both);
+        patches_.is_below[lane] = kind == VolumeNodeKind::below ? 1 : 0;
+        patches_.is_both[lane] = is_both ? 1 : 0;
+        fill(patches_.all, patches_.varying, is_constant ? nullptr : polynomials, lane);
+        fill(patches_.above, patches_.above_varying, is_both ? polynomials + 1 : nullptr, lane);
+    }
+
+    /// @param polynomial nullptr: the calm value
+    void fill(double (&of)[coefficients][lanes], unsigned int (&varying)[levels], const Triquadratic* polynomial,
+              int lane) const {
+        constexpr int order[coefficients] = {0,  9,  18,                                              // z alone
+                                             3,  6,  12, 15, 21, 24,                                  // z and lateral
+                                             1,  2,  4,  5,  7,  8,  10, 11, 13, 14, 16, 17, 19, 20,  // all
+                                             22, 23, 25, 26};
+        constexpr int begin[levels + 1] = {1, 3, 9, coefficients};
+        const auto number = [&](int i) {  // +0 for -0
+            return double{(*polynomial)[static_cast<std::size_t>(order[i])]} + 0.0;
+        };
+        of[0][lane] = polynomial != nullptr ? number(0) : view_.calm_value;
+        const int level = polynomial != nullptr ? varying_axes(*polynomial) : 0;
+        for (int which = 0; which < levels; ++which) {
+            const bool varies = which < level;
+            const bool has_old = (varying[which] >> static_cast<unsigned int>(lane) & 1U) != 0;
+            for (int i = begin[which]; i < begin[which + 1] && (varies || has_old); ++i) {
+                of[order[i]][lane] = varies ? number(i) : 0;
+            }
+            put(varies, lane, varying[which]);
         }
     }
 
-    VolumeView view_;
-    alignas(64) double low_[3][width];  ///< of the box, in cells
-    alignas(64) double boxes_per_cell_[3][width];
-    alignas(64) double edge_m_[3][width];
-    alignas(64) double all_[coefficients][width];
-    alignas(64) double above_[coefficients][width];
-    alignas(64) double margin_m_[width];
-    alignas(64) double is_outside_[width];  ///< 1 where a lane is outside the volume
-    alignas(64) double is_direct_[width];   ///< 1 where there is no polynomial
+    static void put(bool is_set, int lane, unsigned int& bits) {
+        const unsigned int bit = 1U << static_cast<unsigned int>(lane);
+        bits = is_set ? bits | bit : bits & ~bit;
+    }
+
+    const VolumeView& view_;
+    VolumePatches<lanes>& patches_;
+    int first_;
 };
 
 }  // namespace downwash

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight_job.hpp"
 #include "downwash/simulation/flight_kernel.hpp"
+#include "downwash/simulation/lane_flight.hpp"
 #include "downwash/simulation/rule_checks.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
@@ -39,24 +39,16 @@ struct LaneTrack {
 };
 
 /// The flight of one job in one lane.
-class FlightLane {
+class FlightLane : public LaneFlight<FlightJob, FlightChain> {
  public:
     /// @param track nothing where no delay is longer than recent_ticks
     FlightLane(const FlightSetting& setting, FlightLanes& lanes, int number, LaneTrack track = {})
-        : setting_(&setting), lanes_(&lanes), track_(track), number_(number) {}
-
-    [[nodiscard]] bool is_free() const noexcept { return job_ == nullptr; }
-
-    /// The chain whose jobs the lane flies; nullptr for jobs that stand for themselves.
-    [[nodiscard]] FlightChain* chain() const noexcept { return chain_; }
-    void follow(FlightChain* chain) noexcept { chain_ = chain; }
+        : LaneFlight(number), setting_(&setting), lanes_(&lanes), track_(track) {}
 
     /// Takes a job. A job that is rejected before its first tick leaves the lane free.
     void begin(FlightJob& job) {
-        job_ = &job;
-        leg_ = 0;
+        start(job);
         world_ = flown_world(setting_->model, job.world);
-        first_tick_ = job.first_tick;
         min_clearance_m_ = HUGE_VAL;
         write<VehicleState<double>>(job.start, lanes_->state);
         write<WorldMemory<double>>(job.start.world, lanes_->world_memory);
@@ -69,14 +61,10 @@ class FlightLane {
         for (MapPatches<lane_count>& patches : lanes_->patches) {
             enter(no_patch, patches, number_);
         }
-        is_idle_ = false;
         level_ = 0;
         look_after_every_tick();
         begin_leg();
     }
-
-    /// Whether the lane has numbers to compute with: those of its job, or else ordinary ones.
-    [[nodiscard]] bool can_fly() const noexcept { return !is_free() || is_idle_; }
 
     /// Copies another lane, so that a lane without a job computes with ordinary numbers. The kernel leaves them as they
     /// are.
@@ -89,16 +77,11 @@ class FlightLane {
     /// Goes on with another lane's job, and leaves that one free.
     void move_from(FlightLane& other) {
         copy_numbers(other);
-        job_ = std::exchange(other.job_, nullptr);
-        chain_ = std::exchange(other.chain_, nullptr);
-        leg_ = other.leg_;
+        take_job_of(other);
         world_ = other.world_;
-        first_tick_ = other.first_tick_;
         min_clearance_m_ = other.min_clearance_m_;
         level_ = other.level_;
         lanes_->is_active[other.number_] = 0;
-        is_idle_ = false;
-        other.is_idle_ = true;
     }
 
     /// See LookAround. Where the goal is judged too, look() has to decide.
@@ -132,15 +115,9 @@ class FlightLane {
 
  private:
     void copy_numbers(const FlightLane& other) {
-        using Row = double[lane_count];
-        static_assert(sizeof(FlightLanes) % sizeof(Row) == 0);
-        for (Row& row : std::span(reinterpret_cast<Row*>(lanes_), sizeof(FlightLanes) / sizeof(Row))) {
-            row[number_] = row[other.number_];
-        }
+        copy_rows(other, *lanes_);
         for (TrackRow& past : std::span(track_.rows, static_cast<std::size_t>(track_.ticks))) {
-            for (Row& row : past.motion) {
-                row[number_] = row[other.number_];
-            }
+            copy_rows(other, past);
         }
     }
 
@@ -154,21 +131,6 @@ class FlightLane {
         return track_.rows[track_.ticks - age].motion;
     }
 
-    /// This lane's part of a struct.
-    template <class Struct>
-    [[nodiscard]] Struct read(const LaneRows<Struct>& rows) const noexcept {
-        Struct all;
-        for (int i = 0; i < number_count<double, Struct>; ++i) {
-            set_number_at(all, i, rows[i][number_]);
-        }
-        return all;
-    }
-    template <class Struct>
-    void write(const Struct& from, LaneRows<Struct>& rows) const noexcept {
-        for (int i = 0; i < number_count<double, Struct>; ++i) {
-            rows[i][number_] = number_at<double>(from, i);
-        }
-    }
     [[nodiscard]] FlightState state() const {
         FlightState state{read<VehicleState<double>>(lanes_->state),
                           {read<WorldMemory<double>>(lanes_->world_memory), {}}};
@@ -319,15 +281,9 @@ class FlightLane {
     const FlightSetting* setting_;
     FlightLanes* lanes_;
     LaneTrack track_;
-    int number_;
-    FlightJob* job_ = nullptr;
-    FlightChain* chain_ = nullptr;
-    std::size_t leg_ = 0;
     const FlownWorld* world_ = nullptr;
-    std::int64_t first_tick_ = 0;
     double min_clearance_m_ = HUGE_VAL;  ///< since the job began, when wanted
     int level_ = 0;                      ///< level of the free motion found last
-    bool is_idle_ = false;               ///< the numbers are those that another lane had
 };
 
 }  // namespace downwash::simulation

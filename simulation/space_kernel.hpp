@@ -14,6 +14,8 @@
 
 namespace downwash::simulation {
 
+class SpaceEffect;
+
 /// What a flight adds up tick by tick: numbers of the lane type only.
 template <class T>
 struct BasicSpaceSums {
@@ -63,11 +65,24 @@ struct alignas(64) SpaceLanes {
     /// Where the vehicles were at the last SpaceKernelModel::track_ticks ticks, the oldest first, and room for
     /// max_space_ticks more; the same in every lane.
     SpaceTrackRow<n>* track[lane_count];
+    /// SpaceVolumeViews::patches() of SpaceKernelModel::volumes; the same in every lane.
+    VolumePatches<lane_count>* patches[lane_count];
+    SpaceEffect* effect[lane_count];  ///< what to ask instead of volumes, if any; the same in every lane
 };
 
 /// Looks around lanes, given as bits, for which a check is due: sets how far each may fly until the next one, or the
 /// rejection that it has found. Reads coordinates, `before` and `tick`; clears is_unclear.
 using SpaceLookAround = void (*)(void* flights, unsigned int lanes);
+
+/// What a kernel asks of an effect for one vehicle. By pointers, so that no code of an effect is compiled for wide
+/// instructions.
+struct AskedSpaceEffect {
+    SidedFactor<double> (*at_rotor)(SpaceEffect* effect, int rotor, const dynamics::LaneVector<double>& hub_m,
+                                    const dynamics::LaneRotation<double>& attitude);
+    SidedFactor<double> (*at_body)(SpaceEffect* effect, const dynamics::LaneVector<double>& center_m,
+                                   const dynamics::LaneRotation<double>& attitude);
+    dynamics::LaneVector<double> (*wall_nearness)(SpaceEffect* effect, const dynamics::LaneVector<double>& center_m);
+};
 
 /// What flights of a pool have in common.
 template <int n>
@@ -80,6 +95,7 @@ struct SpaceKernelModel {
     double least_upright_cosine;                                     ///< of unstable_pitch_rad
     double max_state, max_result;                                    ///< see execution.hpp
     SpaceVolumeViews volumes;
+    AskedSpaceEffect ask;
     int track_ticks;  ///< ticks that flights remember: recent_ticks, or as many as the longest delay needs
     const float* normal_levels;
     SpaceLookAround look_around;

@@ -140,6 +140,81 @@ class SpaceTrack {
     PastSpaceMotion<Pack, n> old_;
 };
 
+/// A TurningSpaceField of a group: volumes or, if there is one, an effect that is asked lane by lane.
+class LaneField {
+ public:
+    using Vector = dynamics::LaneVector<Pack>;
+    using Rotation = dynamics::LaneRotation<Pack>;
+
+    LaneField(const SpaceLaneGroup& group, const SpaceVolumeViews& views, VolumePatches<lane_count>* patches,
+              const AskedSpaceEffect& ask, SpaceEffect* effect)
+        : volumes_(views, patches, group.first), ask_(ask), effect_(effect), active_(lane::bits_of(group.is_active)) {}
+
+    SidedFactor<Pack> at_rotor(int rotor, const Vector& hub_m) {
+        return at_turned_rotor(rotor, hub_m, VolumeField<Pack, lane_count>::level());
+    }
+    SidedFactor<Pack> at_body(const Vector& center_m) {
+        return at_turned_body(center_m, VolumeField<Pack, lane_count>::level());
+    }
+    SidedFactor<Pack> at_turned_rotor(int rotor, const Vector& hub_m, const Rotation& attitude) {
+        return effect_ == nullptr ? volumes_.at_turned_rotor(rotor, hub_m, attitude)
+                                  : asked_at_rotor(rotor, hub_m, attitude);
+    }
+    SidedFactor<Pack> at_turned_body(const Vector& center_m, const Rotation& attitude) {
+        return effect_ == nullptr ? volumes_.at_turned_body(center_m, attitude) : asked_at_body(center_m, attitude);
+    }
+    Vector wall_nearness(const Vector& center_m) {
+        return effect_ == nullptr ? volumes_.wall_nearness(center_m) : asked_of_walls(center_m);
+    }
+
+ private:
+    static dynamics::LaneVector<double> vector_in(const Vector& v, int lane) {
+        return {lane::number_in(v.x, lane), lane::number_in(v.y, lane), lane::number_in(v.z, lane)};
+    }
+    static dynamics::LaneRotation<double> rotation_in(const Rotation& r, int lane) {
+        return {vector_in(r.first, lane), vector_in(r.second, lane), vector_in(r.third, lane)};
+    }
+    template <class Act>
+    void for_each_lane(const Act& act) const {
+        for (unsigned int left = active_; left != 0; left &= left - 1) {
+            act(__builtin_ctz(left));
+        }
+    }
+    static void put(const SidedFactor<double>& k, int lane, SidedFactor<Pack>& all) {
+        lane::set_number(all.all, lane, k.all);
+        lane::set_number(all.above, lane, k.above);
+    }
+    [[gnu::noinline]] SidedFactor<Pack> asked_at_rotor(int rotor, const Vector& hub_m, const Rotation& attitude) const {
+        SidedFactor<Pack> all{Pack(1), Pack(1)};
+        for_each_lane([&](int lane) {
+            put(ask_.at_rotor(effect_, rotor, vector_in(hub_m, lane), rotation_in(attitude, lane)), lane, all);
+        });
+        return all;
+    }
+    [[gnu::noinline]] SidedFactor<Pack> asked_at_body(const Vector& center_m, const Rotation& attitude) const {
+        SidedFactor<Pack> all{Pack(1), Pack(1)};
+        for_each_lane([&](int lane) {
+            put(ask_.at_body(effect_, vector_in(center_m, lane), rotation_in(attitude, lane)), lane, all);
+        });
+        return all;
+    }
+    [[gnu::noinline]] Vector asked_of_walls(const Vector& center_m) const {
+        Vector all{Pack(0), Pack(0), Pack(0)};
+        for_each_lane([&](int lane) {
+            const dynamics::LaneVector<double> towards = ask_.wall_nearness(effect_, vector_in(center_m, lane));
+            lane::set_number(all.x, lane, towards.x);
+            lane::set_number(all.y, lane, towards.y);
+            lane::set_number(all.z, lane, towards.z);
+        });
+        return all;
+    }
+
+    VolumeField<Pack, lane_count> volumes_;
+    const AskedSpaceEffect& ask_;
+    SpaceEffect* effect_;
+    unsigned int active_;
+};
+
 // With narrow registers, one function that has everything in it compiles for a minute and gains nothing; what
 // sanitizers add would keep the compiler busy, too.
 #if defined(__AVX2__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
@@ -153,7 +228,7 @@ template <int n, class Law>
 [[DOWNWASH_IN_ONE_PIECE]] void command_lanes(const SpaceTickModel<n>& model, const void* law,
                                              const dynamics::SpaceState<Pack, n>& seen,
                                              const SpaceLawMemory<Pack, n>& memory,
-                                             const BasicSpacePoint<Pack, n>& reference, VolumeField<Pack>& field,
+                                             const BasicSpacePoint<Pack, n>& reference, LaneField& field,
                                              SpaceActuation<Pack, n>& given, SpaceLawMemory<Pack, n>& next) {
     control(model, *static_cast<const Law*>(law), seen, memory, reference, field, given, next);
 }
@@ -163,7 +238,7 @@ template <int n>
 [[DOWNWASH_IN_ONE_PIECE]] void move_lanes(const SpaceKernelModel<n>& model, const SpaceWorldDifferences<Pack>& world,
                                           const BasicSpaceModel<Pack, n>& plant, const Pack gust[5],
                                           const dynamics::SpaceState<Pack, n>& state,
-                                          const dynamics::SpaceCommand<Pack, n>& command, VolumeField<Pack>& field,
+                                          const dynamics::SpaceCommand<Pack, n>& command, LaneField& field,
                                           dynamics::SpaceState<Pack, n>& next) {
     move_in_world(model.tick, world, plant, wind_in(world, gust), state, command, field, model.step, next);
 }
@@ -210,7 +285,7 @@ void fly_space_group(const SpaceKernelModel<n>& model, SpaceLanes<n>& lanes, con
     const BasicSpaceModel<Pack, n> plant = plant_in(model.tick, world);
     const Lateness<Pack> late = lateness(world.delay_ticks);
     SpaceTrack<n> track(group, lanes.track[0], model.track_ticks);
-    VolumeField<Pack> field(model.volumes);
+    LaneField field(group, model.volumes, lanes.patches[0], model.ask, lanes.effect[0]);
     SpaceVehicle<Pack, n> states[2];
     SpaceVehicle<Pack, n>* state = &states[0];
     group.load(lanes.vehicle, *state);

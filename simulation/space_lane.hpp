@@ -6,9 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <utility>
 
-#include "downwash/base/numbers.hpp"
+#include "downwash/simulation/lane_flight.hpp"
 #include "downwash/simulation/space_flight.hpp"
 #include "downwash/simulation/space_flight_job.hpp"
 #include "downwash/simulation/space_kernel.hpp"
@@ -61,39 +60,31 @@ struct SpaceSetting {
 
 /// The flight of one job in space in one lane; see LaneOf.
 template <int n>
-class SpaceLane {
+class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
  public:
     /// @param track where vehicles were: model.track_ticks rows
     SpaceLane(const SpaceSetting<n>& setting, const SpaceKernelModel<n>& model, SpaceLanes<n>& lanes,
               SpaceTrackRow<n>* track, int number)
-        : setting_(&setting), model_(&model), lanes_(&lanes), track_(track), number_(number) {}
-
-    [[nodiscard]] bool is_free() const noexcept { return job_ == nullptr; }
-    [[nodiscard]] SpaceFlightChain* chain() const noexcept { return chain_; }
-    void follow(SpaceFlightChain* chain) noexcept { chain_ = chain; }
-    [[nodiscard]] bool can_fly() const noexcept { return !is_free() || is_idle_; }
+        : LaneFlight(number), setting_(&setting), model_(&model), lanes_(&lanes), track_(track) {}
 
     void begin(SpaceFlightJob& job) {
-        job_ = &job;
-        leg_ = 0;
+        start(job);
         description_ = job.world != nullptr ? job.world : &setting_->nominal_world;
         world_ = job.world != nullptr ? make_space_world<n>(setting_->setup.robot, *job.world) : setting_->nominal;
-        first_tick_ = job.first_tick;
-        SpaceFlightState<double, n> start{};
-        copy_common(job.start, start);
-        write<SpaceVehicle<double, n>>(start, lanes_->vehicle);
+        SpaceFlightState<double, n> now{};
+        copy_common(job.start, now);
+        write<SpaceVehicle<double, n>>(now, lanes_->vehicle);
         for (int i = 0; i < 5; ++i) {
-            lanes_->gust[i][number_] = start.world.gust[i];
+            lanes_->gust[i][number_] = now.world.gust[i];
         }
         for (int age = 1; age <= model_->track_ticks; ++age) {
-            write(past_at(start.world, age), track_row(age));
+            write(past_at(now.world, age), track_row(age));
         }
         write(world_.numbers, lanes_->world);
         lanes_->tape[number_] = world_.tape;
         lanes_->has_noise[number_] = world_.has_noise ? 1 : 0;
         lanes_->is_active[number_] = 1;
         lanes_->tick[number_] = 0;
-        is_idle_ = false;
         free_motion_m_ = -1;
         begin_leg();
         if (const Rejection rejection = rejection_at_start(); rejection != Rejection::none) {
@@ -109,17 +100,12 @@ class SpaceLane {
 
     void move_from(SpaceLane& other) {
         copy_numbers(other);
-        job_ = std::exchange(other.job_, nullptr);
-        chain_ = std::exchange(other.chain_, nullptr);
-        leg_ = other.leg_;
+        take_job_of(other);
         description_ = other.description_;
         world_ = other.world_;
-        first_tick_ = other.first_tick_;
         looked_at_ = other.looked_at_;
         free_motion_m_ = other.free_motion_m_;
         lanes_->is_active[other.number_] = 0;
-        is_idle_ = false;
-        other.is_idle_ = true;
     }
 
     /// See SpaceLookAround.
@@ -155,15 +141,9 @@ class SpaceLane {
     static constexpr int coordinates = dynamics::space_coordinates<n>;
 
     void copy_numbers(const SpaceLane& other) {
-        using Row = double[lane_count];
-        static_assert(sizeof(SpaceLanes<n>) % sizeof(Row) == 0);
-        for (Row& row : std::span(reinterpret_cast<Row*>(lanes_), sizeof(SpaceLanes<n>) / sizeof(Row))) {
-            row[number_] = row[other.number_];
-        }
+        copy_rows(other, *lanes_);
         for (SpaceTrackRow<n>& past : std::span(track_, static_cast<std::size_t>(model_->track_ticks))) {
-            for (Row& row : past.motion) {
-                row[number_] = row[other.number_];
-            }
+            copy_rows(other, past);
         }
     }
 
@@ -172,21 +152,6 @@ class SpaceLane {
         return track_[model_->track_ticks - age].motion;
     }
 
-    /// This lane's part of a struct.
-    template <class Struct>
-    [[nodiscard]] Struct read(const LaneRows<Struct>& rows) const noexcept {
-        Struct all;
-        for (int i = 0; i < number_count<double, Struct>; ++i) {
-            set_number_at(all, i, rows[i][number_]);
-        }
-        return all;
-    }
-    template <class Struct>
-    void write(const Struct& from, LaneRows<Struct>& rows) const noexcept {
-        for (int i = 0; i < number_count<double, Struct>; ++i) {
-            rows[i][number_] = number_at<double>(from, i);
-        }
-    }
     [[nodiscard]] dynamics::SpaceState<double, n> plant() const {
         return read<SpaceVehicle<double, n>>(lanes_->vehicle).plant;
     }
@@ -270,7 +235,10 @@ class SpaceLane {
             }
             free_m = free_motion_m_ - moved_m;
         }
-        if (const VolumeMap* const map = setting_->setup.volumes.rotor) {
+        const VolumeMap* const map =
+            setting_->setup.volumes != nullptr ? setting_->setup.volumes->rotor.get() : nullptr;
+        SpaceEffect* const effect = lanes_->effect[0];
+        if (map != nullptr || effect != nullptr) {
             const dynamics::SpaceState<double, n> now = plant();
             const dynamics::LaneRotation<double> attitude = dynamics::rotation_of(now.q + 3);
             const SpaceModel<n>& nominal = model_->tick.nominal.plant;
@@ -278,6 +246,13 @@ class SpaceLane {
                 const auto at =
                     nominal_place(world_.numbers, dynamics::LaneVector<double>{now.q[0], now.q[1], now.q[2]} +
                                                       attitude * nominal.rotor[i].position_m);
+                if (effect != nullptr) {
+                    if (!effect->is_flyable(i, at)) {
+                        return Rejection::flyable_area;
+                    }
+                    free_m = -1;  // it does not say how far the end of the area is
+                    continue;
+                }
                 const Vector3 hub_m{at.x, at.y, at.z};
                 const double margin_m = map->margin_m(hub_m);
                 if (margin_m <= 0 && !map->is_flyable(hub_m)) {
@@ -320,16 +295,10 @@ class SpaceLane {
     const SpaceKernelModel<n>* model_;
     SpaceLanes<n>* lanes_;
     SpaceTrackRow<n>* track_;
-    int number_;
-    SpaceFlightJob* job_ = nullptr;
-    SpaceFlightChain* chain_ = nullptr;
-    std::size_t leg_ = 0;
     const SpaceWorld* description_ = nullptr;
     FlownSpaceWorld<n> world_{};
-    std::int64_t first_tick_ = 0;
     SpacePose looked_at_;        ///< where collisions were looked for last, and
     double free_motion_m_ = -1;  ///< how far from there none can be
-    bool is_idle_ = false;       ///< the numbers are those that another lane had
 };
 
 }  // namespace downwash::simulation

@@ -82,6 +82,15 @@ void look_around(void* flights, unsigned int lanes) {
     }
 }
 
+constexpr simulation::AskedSpaceEffect asked_effect{
+    [](simulation::SpaceEffect* effect, int rotor, const dynamics::LaneVector<double>& hub_m,
+       const dynamics::LaneRotation<double>& attitude) { return effect->at_turned_rotor(rotor, hub_m, attitude); },
+    [](simulation::SpaceEffect* effect, const dynamics::LaneVector<double>& center_m,
+       const dynamics::LaneRotation<double>& attitude) { return effect->at_turned_body(center_m, attitude); },
+    [](simulation::SpaceEffect* effect, const dynamics::LaneVector<double>& center_m) {
+        return effect->wall_nearness(center_m);
+    }};
+
 /// The family of vehicles that fly in space with an arm of n joints.
 template <int n>
 struct SpaceFamily {
@@ -117,8 +126,14 @@ struct SpaceFamily {
      public:
         explicit Lanes(const SpaceFamily& family)
             : family_(family),
-              track_(static_cast<std::size_t>(family.model.track_ticks + simulation::max_space_ticks)) {
+              track_(static_cast<std::size_t>(family.model.track_ticks + simulation::max_space_ticks)),
+              patches_(static_cast<std::size_t>(family.model.volumes.patches())) {
+            if (family.setting.setup.make_effect) {
+                effect_ = family.setting.setup.make_effect();
+            }
             std::fill(std::begin(lanes_.track), std::end(lanes_.track), track_.data());
+            std::fill(std::begin(lanes_.patches), std::end(lanes_.patches), patches_.data());
+            std::fill(std::begin(lanes_.effect), std::end(lanes_.effect), effect_.get());
             flights_.reserve(lane_count);
             for (int i = 0; i < lane_count; ++i) {
                 flights_.emplace_back(family.setting, family.model, lanes_, track_.data(), i);
@@ -140,6 +155,8 @@ struct SpaceFamily {
         const SpaceFamily& family_;
         SpaceLanes<n> lanes_{};
         std::vector<simulation::SpaceTrackRow<n>> track_;
+        std::vector<VolumePatches<lane_count>> patches_;
+        std::unique_ptr<simulation::SpaceEffect> effect_;
         std::vector<SpaceLane<n>> flights_;
     };
 
@@ -158,7 +175,10 @@ struct SpaceFamily {
         model.least_upright_cosine = lane::sin_cos(unstable_pitch_rad).cosine;
         model.max_state = max_state;
         model.max_result = max_result;
-        model.volumes = views_of(setup.volumes);
+        if (setup.volumes != nullptr) {
+            model.volumes = simulation::views_of(*setup.volumes, setup.robot);
+        }
+        model.ask = asked_effect;
         model.normal_levels = simulation::normal_levels();
         model.look_around = look_around<n>;
         return model;

@@ -1,40 +1,24 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 
-#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/space_loop.hpp"
-#include "downwash/simulation/volume_field.hpp"
+#include "downwash/simulation/surface_volumes.hpp"
 
 namespace downwash {
-
-/// The effects of surfaces on a robot in space, in volumes, of models of a single rotor.
-struct SpaceVolumes {
-    const VolumeMap* rotor = nullptr;  ///< of K, the same for all rotors; nullptr: nothing acts on them
-    const VolumeMap* walls = nullptr;  ///< of how near walls are; nullptr: they do nothing
-};
-
-/// The same to look up in.
-[[nodiscard]] inline simulation::SpaceVolumeViews views_of(const SpaceVolumes& volumes) {
-    simulation::SpaceVolumeViews views;
-    if (volumes.rotor != nullptr) {
-        views.has_rotors = true;
-        views.rotor = volumes.rotor->view();
-    }
-    if (volumes.walls != nullptr) {
-        views.has_walls = true;
-        views.walls = volumes.walls->view();
-    }
-    return views;
-}
 
 /// What flies in a SpacePool, and under which rules: those of fly() for one flight (space_flight.hpp).
 struct SpacePoolSetup {
     const SpaceRobot& robot;
     simulation::SpaceAero aero = {};
-    SpaceVolumes volumes = {};              ///< surfaces in their nominal places; without them everything is flyable
+    /// Surfaces in their nominal places, in volumes of this robot; nullptr: none, and everything is flyable.
+    const SurfaceVolumes* volumes = nullptr;
+    /// Instead of volumes: what else says how surfaces act, as DirectSpaceEffect does. Each thread makes one of its own
+    /// and asks it vehicle by vehicle. All that are made say the same. Empty: there is none.
+    std::function<std::unique_ptr<simulation::SpaceEffect>()> make_effect = {};
     const SpaceChecker* checker = nullptr;  ///< of collisions, with obstacles in their nominal places; nullptr: none
     double margin_m = 0;                    ///< least clearance of obstacles, also between ticks, >= 0
     std::optional<double> energy_budget_j = {};  ///< a job that has spent more at its end is rejected as over_budget

@@ -6,25 +6,25 @@
 namespace downwash::simulation {
 namespace {
 
-/// Offsets to the other hubs in the order of a list of neighbours.
-std::vector<Vector3> in_order_of(const RotorNeighbours& neighbours, const std::vector<Vector3>& hubs_m,
-                                 std::size_t rotor, double radius_m) {
+/// The other rotors in the order of a list of neighbours.
+std::vector<std::size_t> in_order_of(const RotorNeighbours& neighbours, const std::vector<Vector3>& hubs_m,
+                                     std::size_t rotor, double radius_m) {
     constexpr double rounding = 1e-9;
     std::vector<bool> is_used(hubs_m.size(), false);
     is_used[rotor] = true;
-    std::vector<Vector3> offsets_m;
+    std::vector<std::size_t> others;
     for (const auto& [x, y] : neighbours.offsets_radii) {
         for (std::size_t i = 0; i < hubs_m.size(); ++i) {
             const Vector3 offset_m = hubs_m[i] - hubs_m[rotor];
             if (!is_used[i] && std::abs(offset_m[0] / radius_m - x) < rounding &&
                 std::abs(offset_m[1] / radius_m - y) < rounding) {
                 is_used[i] = true;
-                offsets_m.push_back(offset_m);
+                others.push_back(i);
                 break;
             }
         }
     }
-    return offsets_m;
+    return others;
 }
 
 }  // namespace
@@ -37,7 +37,11 @@ SpaceRotorPlaces::SpaceRotorPlaces(const SpaceRobot& robot) : radius_m(robot.rot
         center_m = center_m + 1 / count * rotor.position_m;
     }
     for (std::size_t i = 0; i < hubs_m.size(); ++i) {
-        neighbours_m.push_back(in_order_of(neighbours(i), hubs_m, i, radius_m));
+        neighbour.push_back(in_order_of(neighbours(i), hubs_m, i, radius_m));
+        std::vector<Vector3>& offsets_m = neighbours_m.emplace_back();
+        for (const std::size_t other : neighbour.back()) {
+            offsets_m.push_back(hubs_m[other] - hubs_m[i]);
+        }
         from_center_m.push_back(hubs_m[i] - center_m);
         const Vector3& from_m = from_center_m.back();
         reach_m = std::max(reach_m, std::sqrt(from_m[0] * from_m[0] + from_m[1] * from_m[1]));

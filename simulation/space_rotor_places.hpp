@@ -2,6 +2,7 @@
 
 // Private to simulation/.
 
+#include <cstddef>
 #include <vector>
 
 #include "downwash/base/vector3.hpp"
@@ -18,11 +19,12 @@ struct SpaceRotorPlaces {
     /// Of a rotor of the level vehicle that heads along x.
     [[nodiscard]] RotorNeighbours neighbours(std::size_t rotor) const;
 
-    std::vector<Vector3> hubs_m;                     ///< from the multirotor's centre of mass
-    std::vector<std::vector<Vector3>> neighbours_m;  ///< from each hub to the others, in the order of neighbours()
-    std::vector<Vector3> from_center_m;              ///< of each hub from the centre between them
-    double reach_m = 0;                              ///< level distance from that centre to the farthest hub
-    double radius_m;                                 ///< R
+    std::vector<Vector3> hubs_m;                      ///< from the multirotor's centre of mass
+    std::vector<std::vector<std::size_t>> neighbour;  ///< the others of each rotor, in the order of neighbours()
+    std::vector<std::vector<Vector3>> neighbours_m;   ///< from each hub to those
+    std::vector<Vector3> from_center_m;               ///< of each hub from the centre between them
+    double reach_m = 0;                               ///< level distance from that centre to the farthest hub
+    double radius_m;                                  ///< R
 };
 
 /// Places at an attitude. @param from_m where they are relative to   @param[out] at_m as many as offsets

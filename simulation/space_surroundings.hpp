@@ -50,7 +50,15 @@ struct NoSpaceEffect {
 /// K of a tilted rotor by side. @param axis of its thrust, of length 1, in the world
 template <class T>
 SidedFactor<T> tilted_in_space(const SidedFactor<T>& level, const TiltLoss& loss, const dynamics::LaneVector<T>& axis) {
-    return loss.is_any() ? tilted(level, loss, dynamics::sine_of_tilt(axis)) : level;
+    // Few rotors have a surface on a side whose effect fades.
+    const T of_ground = loss.ground > 0 ? lane::abs(level.all - level.above) : T(0);
+    const T of_ceiling = loss.ceiling > 0 ? lane::abs(level.above - T(1)) : T(0);
+    const auto fades = lane::max(of_ground, of_ceiling) > T(0);
+    if (lane::bits_of(fades) == 0) {
+        return level;
+    }
+    const SidedFactor<T> k = tilted(level, loss, dynamics::sine_of_tilt(axis));
+    return {lane::select(fades, k.all, level.all), lane::select(fades, k.above, level.above)};
 }
 
 /// The surroundings of a vehicle in the nominal world: surface effects on rotors that tilt, still air, slipstreams. A

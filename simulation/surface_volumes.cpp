@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "downwash/aeromap/map_cache.hpp"
-#include "downwash/base/lane_math.hpp"
 #include "downwash/effects/effect_models.hpp"
 #include "downwash/simulation/space_rotor_places.hpp"
 
@@ -77,95 +76,71 @@ void SurfaceVolumes::keep(const std::filesystem::path& folder) const {
 
 namespace simulation {
 
-VolumeSpaceEffect::VolumeSpaceEffect(const SurfaceVolumes& volumes, const SpaceRobot& robot)
-    : volumes_(volumes),
-      rotors_(std::make_unique<const SpaceRotorPlaces>(robot)),
-      max_factor_(volumes.rotor->effect().settings().max_factor),
-      patches_(rotors_->hubs_m.size(), VolumePatches<double>(volumes.rotor->view())) {
-    if (volumes_.walls != nullptr) {
-        walls_.emplace_back(volumes_.walls->view());
+SpaceVolumeViews views_of(const SurfaceVolumes& volumes, const SpaceRobot& robot) {
+    const SpaceRotorPlaces places(robot);
+    SpaceVolumeViews views;
+    views.has_rotors = true;
+    views.rotor = volumes.rotor->view();
+    views.max_factor = volumes.rotor->effect().settings().max_factor;
+    views.has_ground_images = volumes.has_ground_images;
+    views.has_ceiling_images = volumes.has_ceiling_images;
+    if (volumes.walls != nullptr) {
+        views.has_walls = true;
+        views.walls = volumes.walls->view();
     }
-    for (std::size_t i = 0; i < rotors_->hubs_m.size() && !volumes_.images.empty(); ++i) {
-        std::vector<const VolumeMap*> of_neighbours;
-        for (const double distance_radii : rotors_->neighbours(i).distances_radii) {
-            const auto image =
-                std::find_if(volumes_.images.begin(), volumes_.images.end(),
-                             [&](const SurfaceVolumes::Image& one) { return one.distance_radii == distance_radii; });
-            of_neighbours.push_back(image->map.get());
+    if (volumes.fountain != nullptr) {
+        views.has_fountain = true;
+        views.fountain = volumes.fountain->view();
+    }
+    for (const SurfaceVolumes::Image& image : volumes.images) {
+        views.image[views.image_count++] = image.map->view();
+    }
+    const auto lane_vector = [](const Vector3& v) { return dynamics::LaneVector<double>{v[0], v[1], v[2]}; };
+    for (std::size_t i = 0; i < places.hubs_m.size(); ++i) {
+        views.from_center_m[i] = lane_vector(places.from_center_m[i]);
+        const std::vector<double> distances_radii = places.neighbours(i).distances_radii;
+        for (std::size_t k = 0; k < distances_radii.size() && !volumes.images.empty(); ++k) {
+            const auto image = std::find_if(
+                volumes.images.begin(), volumes.images.end(),
+                [&](const SurfaceVolumes::Image& one) { return one.distance_radii == distances_radii[k]; });
+            views.neighbour[i][k] = {lane_vector(places.neighbours_m[i][k]), static_cast<int>(places.neighbour[i][k]),
+                                     static_cast<int>(image - volumes.images.begin())};
         }
-        image_.push_back(std::move(of_neighbours));
     }
+    views.rotor_count = static_cast<int>(places.hubs_m.size());
+    return views;
 }
 
-VolumeSpaceEffect::~VolumeSpaceEffect() = default;
+VolumeSpaceEffect::VolumeSpaceEffect(const SurfaceVolumes& volumes, const SpaceRobot& robot)
+    : volumes_(volumes),
+      views_(views_of(volumes, robot)),
+      patches_(static_cast<std::size_t>(views_.patches())),
+      field_(views_, patches_.data()) {}
 
 SidedFactor<double> VolumeSpaceEffect::at_rotor(int rotor, const dynamics::LaneVector<double>& hub_m) {
-    return at_turned_rotor(rotor, hub_m, level_attitude);
+    return field_.at_rotor(rotor, hub_m);
 }
 
 SidedFactor<double> VolumeSpaceEffect::at_body(const dynamics::LaneVector<double>& center_m) {
-    return at_turned_body(center_m, level_attitude);
-}
-
-VolumeSpaceEffect::Losses VolumeSpaceEffect::neighbours_take(int rotor, const Vector3& hub_m,
-                                                             const dynamics::LaneRotation<double>& attitude) {
-    const auto which = static_cast<std::size_t>(rotor);
-    place_at({hub_m[0], hub_m[1], hub_m[2]}, attitude, rotors_->neighbours_m[which], places_m_);
-    Losses all;
-    SidedFactor<double> own{1, 1};  // of the image that was looked at last
-    for (std::size_t i = 0; i < places_m_.size(); ++i) {
-        const VolumeMap& image = *image_[which][i];
-        if (i == 0 || &image != image_[which][i - 1]) {
-            own = image.sided_factor(hub_m);
-        }
-        const SidedFactor<double> other = image.sided_factor(places_m_[i]);
-        all.ground += std::max(0.0, std::min(own.all - own.above, other.all - other.above));
-        all.ceiling += std::max(0.0, std::min(own.above, other.above) - 1);
-    }
-    return all;
+    return field_.at_body(center_m);
 }
 
 SidedFactor<double> VolumeSpaceEffect::at_turned_rotor(int rotor, const dynamics::LaneVector<double>& hub_m,
                                                        const dynamics::LaneRotation<double>& attitude) {
-    const SidedFactor<double> alone = patches_[static_cast<std::size_t>(rotor)].at(hub_m.x, hub_m.y, hub_m.z);
-    if (image_.empty() || (alone.all == 1 && alone.above == 1)) {
-        return alone;
-    }
-    const Losses taken = neighbours_take(rotor, {hub_m.x, hub_m.y, hub_m.z}, attitude);
-    double ground = alone.all - alone.above + 1;
-    double ceiling = alone.above;
-    if (volumes_.has_ground_images) {
-        ground = factor_with_loss(1 - 1 / std::max(1.0, ground) + taken.ground, max_factor_);
-    }
-    if (volumes_.has_ceiling_images) {
-        ceiling = factor_with_loss(1 - 1 / std::max(1.0, ceiling) + taken.ceiling, max_factor_);
-    }
-    return {lane::clamp(1 + (ground - 1) + (ceiling - 1), 0.0, max_factor_), lane::clamp(ceiling, 0.0, max_factor_)};
+    return field_.at_turned_rotor(rotor, hub_m, attitude);
 }
 
 SidedFactor<double> VolumeSpaceEffect::at_turned_body(const dynamics::LaneVector<double>& center_m,
                                                       const dynamics::LaneRotation<double>& attitude) {
-    if (volumes_.fountain == nullptr) {
-        return {1, 1};
-    }
-    place_at(center_m, attitude, rotors_->from_center_m, places_m_);
-    double sum = 0;
-    for (const Vector3& hub_m : places_m_) {
-        sum += volumes_.fountain->factor(hub_m);
-    }
-    return {sum / static_cast<double>(places_m_.size()), 1};
+    return field_.at_turned_body(center_m, attitude);
 }
 
 dynamics::LaneVector<double> VolumeSpaceEffect::wall_nearness(const dynamics::LaneVector<double>& center_m) {
-    if (walls_.empty()) {
-        return {0, 0, 0};
-    }
-    const SidedFactor<double> towards = walls_.front().at(center_m.x, center_m.y, center_m.z);
-    return {towards.all, towards.above, 0};
+    return field_.wall_nearness(center_m);
 }
 
 bool VolumeSpaceEffect::is_flyable(int rotor, const dynamics::LaneVector<double>& hub_m) {
-    const double margin_m = patches_[static_cast<std::size_t>(rotor)].margin_m(hub_m.x, hub_m.y, hub_m.z);
+    const double margin_m = field_.margin_m(rotor, hub_m);
     return margin_m == 0 ? volumes_.rotor->effect().is_flyable({hub_m.x, hub_m.y, hub_m.z}) : margin_m > 0;
 }
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "downwash/aeromap/volume_map.hpp"
-#include "downwash/aeromap/volume_patches.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/simulation/space_effect.hpp"
+#include "downwash/simulation/volume_field.hpp"
 
 // The effects of surfaces in volumes, for flights in space: lazily filled, shared by all flights of a robot.
 
@@ -44,15 +44,14 @@ struct DOWNWASH_EXPORT SurfaceVolumes {
 
 namespace simulation {
 
-struct SpaceRotorPlaces;
+/// Volumes of a robot to look up in. @pre they outlive the views
+[[nodiscard]] DOWNWASH_EXPORT SpaceVolumeViews views_of(const SurfaceVolumes& volumes, const SpaceRobot& robot);
 
-/// The effects of a scene on a robot's rotors, looked up in volumes along one flight. Of models of a single rotor,
-/// walls and flyable area it is what VolumePatches say in every lane type, to the last bit.
+/// The effects of a scene on a robot's rotors, looked up in volumes along one flight: the VolumeField of one lane.
 class DOWNWASH_EXPORT VolumeSpaceEffect final : public SpaceEffect {
  public:
     /// @param volumes of this robot; shared
     VolumeSpaceEffect(const SurfaceVolumes& volumes, const SpaceRobot& robot);
-    ~VolumeSpaceEffect() override;
 
     SidedFactor<double> at_rotor(int rotor, const dynamics::LaneVector<double>& hub_m) override;
     SidedFactor<double> at_body(const dynamics::LaneVector<double>& center_m) override;
@@ -65,20 +64,10 @@ class DOWNWASH_EXPORT VolumeSpaceEffect final : public SpaceEffect {
     bool is_flyable(int rotor, const dynamics::LaneVector<double>& hub_m) override;
 
  private:
-    struct Losses {
-        double ground = 0, ceiling = 0;
-    };
-    /// What the images of a rotor's neighbours take of its induced velocity.
-    [[nodiscard]] Losses neighbours_take(int rotor, const Vector3& hub_m,
-                                         const dynamics::LaneRotation<double>& attitude);
-
     SurfaceVolumes volumes_;
-    std::unique_ptr<const SpaceRotorPlaces> rotors_;
-    std::vector<std::vector<const VolumeMap*>> image_;  ///< of each rotor, one for each neighbour
-    double max_factor_;
-    std::vector<VolumePatches<double>> patches_;  ///< of each rotor
-    std::vector<VolumePatches<double>> walls_;    ///< one or none
-    std::vector<Vector3> places_m_;               ///< room for those of other rotors
+    SpaceVolumeViews views_;
+    std::vector<VolumePatches<1>> patches_;
+    VolumeField<double> field_;
 };
 
 }  // namespace simulation

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -8,12 +7,6 @@
 #include "downwash/effects/effect_models.hpp"
 
 namespace downwash {
-
-/// K where surfaces take this share of a rotor's induced velocity: from 1 to max_factor; the latter from a share of 1
-/// on.
-[[nodiscard]] inline double factor_with_loss(double share, double max_factor) noexcept {
-    return share < 1 ? std::clamp(1 / (1 - share), 1.0, max_factor) : max_factor;
-}
 
 /// K over zeta = z/R of one wide flat surface, clamped as it is used. Immutable and safe to share.
 class DOWNWASH_EXPORT EffectCurve {

@@ -14,6 +14,13 @@ struct SidedFactor {
     T above;  ///< K of the surfaces above the rotor alone
 };
 
+/// K where surfaces take this share of a rotor's induced velocity: from 1 to max_factor; the latter from a share of 1
+/// on.
+template <class T>
+T factor_with_loss(const T& share, double max_factor) {
+    return lane::select(share < T(1), lane::clamp(T(1) / (T(1) - share), T(1), T(max_factor)), T(max_factor));
+}
+
 /// How fast the effect of each side fades with the tilt of a rotor (docs/model.md 4.7). At a tilt theta a level rotor's
 /// K - 1 = x becomes x^2 / (x + loss sin^2 theta). 0: the rotor counts as level.
 struct TiltLoss {

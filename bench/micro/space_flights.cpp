@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "../../tests/support/space_robots.hpp"
-#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/scene/scene.hpp"
 #include "downwash/simulation/space_pool.hpp"
 
@@ -20,32 +19,18 @@ enum class Air { calm, volume, worlds };
 
 constexpr double deck_z_m = 5;
 
-/// The volume around the robots' rotors under a deck.
-const VolumeMap& volume_under_deck() {
-    static const VolumeMap map(
-        std::make_shared<const DirectEffect>(std::make_shared<const Scene>(std::vector<Obstacle>{
-                                                 {"deck", Box{{30, 2.4, 0.3}}, {0, 0, deck_z_m + 0.15}, {}}}),
-                                             AeroSettings{}, test::space_robot(0).rotor_radius_m),
-        PlaneOfMotion{}, {-8, 8, 0, deck_z_m + 0.5}, -1.5, 1.5);
-    return map;
+/// The volumes around the robots' rotors under a deck.
+const SurfaceVolumes& volumes_under_deck() {
+    static const SurfaceVolumes volumes(std::make_shared<const Scene>(std::vector<Obstacle>{
+                                            {"deck", Box{{30, 2.4, 0.3}}, {0, 0, deck_z_m + 0.15}, {}}}),
+                                        {}, test::space_robot(0), {}, {-8, 8, 0, deck_z_m + 0.5}, -1.5, 1.5);
+    return volumes;
 }
-
-/// Surfaces, whose volume it looks up for one flight.
-class InVolume final : public simulation::SpaceEffect {
- public:
-    explicit InVolume(const SpaceVolumes& volumes) : field_(views_of(volumes)) {}
-    SidedFactor<double> at_rotor(int rotor, const dynamics::LaneVector<double>& hub_m) override {
-        return field_.at_rotor(rotor, hub_m);
-    }
-
- private:
-    simulation::VolumeField<double> field_;
-};
 
 SpacePoolSetup setup_of(const SpaceRobot& robot, Air air) {
     SpacePoolSetup setup{robot};
     if (air != Air::calm) {
-        setup.volumes.rotor = &volume_under_deck();
+        setup.volumes = &volumes_under_deck();
         setup.aero = simulation::space_aero(AeroSettings{}, robot.rotor_radius_m);
     }
     return setup;
@@ -118,11 +103,16 @@ void one_at_a_time(benchmark::State& state, int joints, Air air) {
     const SpaceRobot robot = test::space_robot(joints);
     const SpacePoolSetup setup = setup_of(robot, air);
     const std::vector<SpaceFlightJob> all = edges(SpacePool(setup), joints, air);
-    InVolume volume(setup.volumes);
+    const auto effect = [&]() -> std::unique_ptr<simulation::SpaceEffect> {
+        if (setup.volumes == nullptr) {
+            return std::make_unique<simulation::NoEffectInSpace>();
+        }
+        return std::make_unique<simulation::VolumeSpaceEffect>(*setup.volumes, robot);
+    }();
     std::deque<std::unique_ptr<simulation::SpaceLoop>> loops;
     for (const SpaceFlightJob& job : all) {
         loops.push_back(simulation::make_space_loop(
-            {robot, job.world != nullptr ? *job.world : SpaceWorld{}, volume, setup.aero, /*is_refined=*/false}));
+            {robot, job.world != nullptr ? *job.world : SpaceWorld{}, *effect, setup.aero, /*is_refined=*/false}));
     }
     std::int64_t ticks = 0;
     for ([[maybe_unused]] auto _ : state) {

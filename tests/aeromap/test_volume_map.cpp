@@ -254,7 +254,8 @@ TEST_CASE("In a girder bay a volume is within 0.01 by side, and knows where one 
     double worst = 0;
     int flyable = 0;
     int known = 0;
-    VolumePatches<double> patches(map.view());
+    VolumePatches<1> patches;
+    VolumeLookUp<double> look_up(map.view(), patches);
     double apart = 0;
     for (int i = 0; i < 40000; ++i) {
         const Vector3 hub_m{random.uniform(-0.6, 1.2), random.uniform(-0.8, 0.8), random.uniform(1.8, 3.9)};
@@ -264,9 +265,9 @@ TEST_CASE("In a girder bay a volume is within 0.01 by side, and knows where one 
         REQUIRE((margin_m == 0 || (margin_m > 0) == is_flyable));
         REQUIRE(map.is_flyable(hub_m) == is_flyable);
         const SidedFactor<double> looked_up = map.sided_factor(hub_m);
-        const SidedFactor<double> by_patch = patches.at(hub_m[0], hub_m[1], hub_m[2]);
+        const SidedFactor<double> by_patch = look_up.at(hub_m[0], hub_m[1], hub_m[2]);
         apart = std::max({apart, std::abs(by_patch.all - looked_up.all), std::abs(by_patch.above - looked_up.above),
-                          std::abs(patches.margin_m(hub_m[0], hub_m[1], hub_m[2]) - margin_m)});
+                          std::abs(look_up.margin_m(hub_m[0], hub_m[1], hub_m[2]) - margin_m)});
         if (is_flyable) {
             const SidedFactor<double> direct = effect->sided_factor(hub_m);
             worst = std::max({worst, std::abs(looked_up.all - direct.all), std::abs(looked_up.above - direct.above)});

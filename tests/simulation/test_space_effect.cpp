@@ -186,7 +186,8 @@ TEST_CASE("Flights through volumes feel what direct effects give, in lanes to th
     const SurfaceVolumes volumes(scene, aero, robot, bay.frame, {-6, 6, 1, 4}, -7, 7);
     simulation::VolumeSpaceEffect looked_up(volumes, robot);
     simulation::DirectSpaceEffect direct(scene, aero, robot);
-    VolumePatches<lane::Pack> lanes(volumes.rotor->view());
+    VolumePatches<lane::width<lane::Pack>> patches;
+    VolumeLookUp<lane::Pack> lanes(volumes.rotor->view(), patches);
     test::Random random(82);
     double worst = 0;
     double walls = 0;

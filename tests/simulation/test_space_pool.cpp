@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 #include <deque>
 #include <map>
@@ -7,12 +8,9 @@
 
 #include "../support/error_of.hpp"
 #include "../support/space_robots.hpp"
-#include "downwash/aeromap/direct_effect.hpp"
-#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/scene/scene.hpp"
 #include "downwash/simulation/space_flight.hpp"
 #include "downwash/simulation/space_pool.hpp"
-#include "downwash/simulation/volume_field.hpp"
 
 // Flights in space side by side: every job ends as one flight alone, whatever it flies with.
 
@@ -114,24 +112,22 @@ std::vector<SpaceFlightJob> flown(const SpacePoolSetup& setup, std::vector<Space
     return jobs;
 }
 
-/// Volumes as what one flight alone meets.
-class InVolumes final : public simulation::SpaceEffect {
- public:
-    explicit InVolumes(const SpaceVolumes& volumes) : map_(*volumes.rotor), field_(views_of(volumes)) {}
-    SidedFactor<double> at_rotor(int rotor, const dynamics::LaneVector<double>& hub_m) override {
-        return field_.at_rotor(rotor, hub_m);
+/// Whether a job ended as a flight alone.
+void check_as_alone(const SpaceFlightJob& job, const SpaceFlight& alone) {
+    const Rejection rejection = job.rejection();
+    CHECK((rejection == Rejection::over_budget ? alone.outcome == Outcome::over_budget : rejection == alone.rejection));
+    std::int64_t ticks = 0;
+    double max_error_m = 0;
+    for (const SpaceFlightLeg& leg : job.legs) {
+        ticks += leg.flight.ticks;
+        max_error_m = std::max(max_error_m, leg.flight.max_tracking_error_m);
     }
-    dynamics::LaneVector<double> wall_nearness(const dynamics::LaneVector<double>& center_m) override {
-        return field_.wall_nearness(center_m);
-    }
-    bool is_flyable(int /*rotor*/, const dynamics::LaneVector<double>& hub_m) override {
-        return map_.is_flyable({hub_m.x, hub_m.y, hub_m.z});
-    }
-
- private:
-    const VolumeMap& map_;
-    simulation::VolumeField<double> field_;
-};
+    const AnySpaceState& end = job.rejected_leg() != nullptr ? job.rejected_leg()->end : job.end();
+    REQUIRE(static_cast<std::size_t>(ticks) + 1 == alone.rows.size());
+    CHECK(max_error_m == alone.max_tracking_error_m);
+    REQUIRE(is_in(alone.rows.back().motion, end));
+    REQUIRE(alone.energy_j == end.plant.energy_j);
+}
 
 /// A deck over part of the reference, and a post beside it.
 std::shared_ptr<const Scene> deck_and_post() {
@@ -232,14 +228,7 @@ TEST_CASE("flights in space side by side end where one flight alone does, and fo
     const auto scene = deck_and_post();
     AeroSettings aero;
     aero.wall = {0.02, 0.04, 0.7};
-    const auto rotor = std::make_shared<const DirectEffect>(scene, aero, robot.rotor_radius_m);
-    const auto wall =
-        std::make_shared<const DirectEffect>(DirectEffect::walls_around(scene, aero, robot.rotor_radius_m, 0.275));
-    const PlaneOfMotion frame({0, 0, 0}, 0.3);
-    const Bounds extent{-2, 3, 0, 4};
-    const VolumeMap map(rotor, frame, extent, -2.5, 2.5);
-    const VolumeMap walls(wall, frame, extent, -2.5, 2.5);
-    const SpaceVolumes volumes{&map, &walls};
+    const SurfaceVolumes volumes(scene, aero, robot, PlaneOfMotion({0, 0, 0}, 0.3), {-2, 3, 0, 4}, -2.5, 2.5);
     SpaceRobotShape shape{{{Box{{0.9, 0.9, 0.1}}, {0, 0, 0}}}, {}};
     if (joints == 2) {
         robot.links[1].is_limited = true;
@@ -260,8 +249,9 @@ TEST_CASE("flights in space side by side end where one flight alone does, and fo
         world.delay_s = i == 11 ? 0.085 : 0;
         worlds.push_back(world);
     }
-    SpacePoolSetup setup{robot, simulation::space_aero(aero, robot.rotor_radius_m), volumes,
-                         looks_for_collisions ? &checker : nullptr};
+    SpacePoolSetup setup{robot, simulation::space_aero(aero, robot.rotor_radius_m)};
+    setup.volumes = &volumes;
+    setup.checker = looks_for_collisions ? &checker : nullptr;
     SpaceFlightSettings settings;
     settings.aero = setup.aero;
     settings.checker = setup.checker;
@@ -285,26 +275,13 @@ TEST_CASE("flights in space side by side end where one flight alone does, and fo
     std::map<Rejection, int> ends;
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         INFO("job " << i);
-        InVolumes effect(volumes);
+        simulation::VolumeSpaceEffect effect(volumes, robot);
         settings.effect = &effect;
         settings.world = worlds[i];
         const SpaceFlight alone = fly(robot, plan, motion_at_rest(plan.reference.front().point), settings);
         const SpaceFlightJob& job = expected[i];
-        const Rejection rejection = job.rejection();
-        ++ends[rejection];
-        CHECK((rejection == Rejection::over_budget ? alone.outcome == Outcome::over_budget
-                                                   : rejection == alone.rejection));
-        std::int64_t ticks = 0;
-        double max_error_m = 0;
-        for (const SpaceFlightLeg& leg : job.legs) {
-            ticks += leg.flight.ticks;
-            max_error_m = std::max(max_error_m, leg.flight.max_tracking_error_m);
-        }
-        const AnySpaceState& end = job.rejected_leg() != nullptr ? job.rejected_leg()->end : job.end();
-        REQUIRE(static_cast<std::size_t>(ticks) + 1 == alone.rows.size());
-        CHECK(max_error_m == alone.max_tracking_error_m);
-        REQUIRE(is_in(alone.rows.back().motion, end));
-        REQUIRE(alone.energy_j == end.plant.energy_j);
+        ++ends[job.rejection()];
+        check_as_alone(job, alone);
     }
     CHECK(ends[Rejection::none] > 0);
     CHECK((looks_for_collisions || ends[Rejection::unstable] > 0));  // what is lost meets something before
@@ -315,6 +292,105 @@ TEST_CASE("flights in space side by side end where one flight alone does, and fo
         for (std::size_t i = 0; i < jobs.size(); ++i) {
             INFO("job " << i << " with instructions " << static_cast<int>(instructions) << ", threads " << threads);
             REQUIRE(is_same(others[i], expected[i]));
+        }
+    }
+}
+
+TEST_CASE("surfaces act on flights in space side by side as on one alone, whatever the model and the field") {
+    const int joints = GENERATE(0, 2);
+    const SpaceRobot robot = space_robot(joints);
+    const auto scene =
+        std::make_shared<const Scene>(std::vector<Obstacle>{{"floor", Box{{20, 20, 1}}, {0, 0, -0.5}, {}},
+                                                            {"step", Box{{2, 20, 0.4}}, {1.2, 0, 0.2}, {}},
+                                                            {"plate", Box{{3, 2, 0.1}}, {0, 1.1, 1.1}, {0, 0, 0.3}},
+                                                            {"wall", Box{{0.1, 4, 2}}, {-0.9, 0, 1}, {}}});
+    SpacePoint from, to;
+    from.position[space::x] = -0.25;
+    from.position[space::y] = 0.1;
+    from.position[space::z] = 0.6;
+    to.position[space::x] = -0.05;
+    to.position[space::y] = 0.25;
+    to.position[space::z] = 0.7;
+    to.position[space::yaw] = 0.4;
+    const int ticks = 60;
+    SpacePlan plan;
+    plan.tick_s = 0.01;
+    plan.joints = joints;
+    plan.reference = {{0, from}, {ticks, to}};
+    std::vector<SpaceWorld> worlds = some_worlds();
+    worlds.erase(worlds.begin() + 7, worlds.end());
+    for (const double up_m : {0.0, 0.1, 0.2, 0.21, 0.22}) {  // some lift the step to where rotors may not fly
+        worlds.emplace_back().scene_m = {-0.4, 0, up_m};
+    }
+
+    std::vector<AeroSettings> all(4);
+    all[1].ground = all[1].ceiling = EffectModel::multirotor_images;
+    all[2].ground = EffectModel::multirotor_body;
+    all[2].tilt_loss.ceiling = 0.2;
+    all[3].wall = {0.02, 0.04, 0.7};
+    std::vector<AnySpaceState> ends;
+    for (std::size_t model = 0; model < all.size(); ++model) {
+        const AeroSettings& aero = all[model];
+        const SurfaceVolumes volumes(scene, aero, robot, {}, {-1, 0.1, 0.2, 1.2}, -1, 1);  // ends among the rotors
+        for (const bool is_direct : {false, true}) {
+            CAPTURE(joints, model, is_direct);
+            const auto make_effect = [&]() -> std::unique_ptr<simulation::SpaceEffect> {
+                if (is_direct) {
+                    return std::make_unique<simulation::DirectSpaceEffect>(scene, aero, robot);
+                }
+                return std::make_unique<simulation::VolumeSpaceEffect>(volumes, robot);
+            };
+            SpacePoolSetup setup{robot, simulation::space_aero(aero, robot.rotor_radius_m)};
+            if (is_direct) {
+                setup.make_effect = make_effect;
+            } else {
+                setup.volumes = &volumes;
+            }
+            std::vector<SpaceFlightJob> jobs;
+            {
+                const SpacePool pool(setup);
+                for (const SpaceWorld& world : worlds) {
+                    jobs.push_back({pool.state_at(motion_at_rest(from), &world), {{plan.segment_to(1)}}, &world, 7});
+                }
+            }
+            const std::vector<SpaceFlightJob> expected = flown(setup, jobs);
+            std::map<Rejection, int> rejections;
+            for (std::size_t i = 0; i < jobs.size(); ++i) {
+                INFO("job " << i);
+                const auto effect = make_effect();
+                SpaceFlightSettings settings;
+                settings.world = worlds[i];
+                settings.effect = effect.get();
+                settings.aero = setup.aero;
+                settings.first_tick = 7;
+                settings.is_refined = false;
+                check_as_alone(expected[i], fly(robot, plan, motion_at_rest(from), settings));
+                ++rejections[expected[i].rejection()];
+            }
+            CHECK(rejections[Rejection::none] > 6);
+            CHECK(rejections[Rejection::flyable_area] > 0);
+            for (const auto& [instructions, threads] : ways_to_fly()) {
+                const std::vector<SpaceFlightJob> others = flown(setup, jobs, instructions, threads);
+                for (std::size_t i = 0; i < jobs.size(); ++i) {
+                    INFO("job " << i << " with instructions " << static_cast<int>(instructions) << ", threads "
+                                << threads);
+                    REQUIRE(is_same(others[i], expected[i]));
+                }
+            }
+            ends.push_back(expected[0].end());
+        }
+    }
+    // Each model and field moved the vehicle in a way of its own, fields of one model nearly alike.
+    const auto apart_m = [&](std::size_t i, std::size_t k) {
+        const double* a = ends[i].plant.q;
+        const double* b = ends[k].plant.q;
+        return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+    };
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        for (std::size_t k = 0; k < i; ++k) {
+            CAPTURE(i, k);
+            CHECK(apart_m(i, k) > (i / 2 == k / 2 ? 0 : 1e-5));
+            CHECK((i / 2 != k / 2 || apart_m(i, k) < 2e-3));
         }
     }
 }
