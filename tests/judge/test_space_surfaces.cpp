@@ -41,34 +41,37 @@ void check_accelerations(EffectModel ground) {
     const auto scene = surfaces_around();
     const AeroSettings aero = of_several_rotors(ground);
     const SpaceWorld nominal{};
-    double worst = 0;  // difference over the size of the largest acceleration
-    double strongest = 0;
+    double worst = 0;      // difference over the size of the largest acceleration
+    double strongest = 0;  // what images of others add to K
     double by_walls = 0, by_fountain = 0;
-    for (int k = 0; k < 100; ++k) {
-        const SpaceRobot robot = robot_of(random_space_plant(random, n));
+    const SpaceRobot robot = robot_of(random_space_plant(random, n));
+    simulation::DirectSpaceEffect effect(scene, aero, robot);
+    const SpaceSlipstreams none = no_space_slipstreams;
+    const simulation::NominalSpace<double, simulation::SpaceEffect> around(effect, aero.tilt_loss, none);
+    auto model = make_space_model<n>(robot.plant);
+    model.has_fountain = ground == EffectModel::multirotor_body;
+    model.has_walls = true;
+    model.wall_force = aero.wall.force;
+    model.wall_moment_m = aero.wall.moment * robot.rotor_radius_m;
+    const judge::SpaceSurfaces surfaces(scene, aero, robot);
+    const judge::SpaceSurroundings surroundings(&surfaces, nominal);
+    const judge::SpaceVehicle vehicle = judge::vehicle_in(nominal, robot);
+    const judge::SpacePlant plant(vehicle, surroundings);
+    AeroSettings without_images = aero;
+    without_images.ground = without_images.ceiling = EffectModel::cheeseman_bennett;
+    const judge::SpaceSurfaces single_rotors(scene, without_images, robot);
+    for (int k = 0; k < 50; ++k) {
         const auto state = random_space_state<n>(random, 0.1);
         std::vector<double> thrust_n;
         double all_n[max_rotors] = {};
         for (std::size_t i = 0; i < robot.plant.rotors.size(); ++i) {
             thrust_n.push_back(all_n[i] = random.uniform(1, 12));
         }
-        simulation::DirectSpaceEffect effect(scene, aero, robot);
-        const SpaceSlipstreams none = no_space_slipstreams;
-        const simulation::NominalSpace<double, simulation::SpaceEffect> around(effect, aero.tilt_loss, none);
-        auto model = make_space_model<n>(robot.plant);
-        model.has_fountain = ground == EffectModel::multirotor_body;
-        model.has_walls = true;
-        model.wall_force = aero.wall.force;
-        model.wall_moment_m = aero.wall.moment * robot.rotor_radius_m;
         const double no_nm[room_for<n>] = {};
         double du[6 + n];
         dynamics::accelerations(model, state.q, state.u, all_n, dynamics::rotor_spin_of(model, all_n), no_nm, around,
                                 du);
 
-        const judge::SpaceSurfaces surfaces(scene, aero, robot);
-        const judge::SpaceSurroundings surroundings(&surfaces, nominal);
-        const judge::SpaceVehicle vehicle = judge::vehicle_in(nominal, robot);
-        const judge::SpacePlant plant(vehicle, surroundings);
         const judge::SpaceCoordinates at = test::coordinates_of<n>(state);
         const judge::BodyMotions bodies = judge::bodies_at(vehicle, at);
         const Eigen::VectorXd a = plant.accelerations(bodies, thrust_n, Eigen::VectorXd::Zero(n), Vector3d::Zero());
@@ -87,10 +90,7 @@ void check_accelerations(EffectModel ground) {
             center_m += hubs_m.back() / static_cast<double>(vehicle.rotors.size());
         }
         const auto factors = surfaces.at_rotors(hubs_m);
-        // The images of others: more than a rotor alone has.
-        AeroSettings alone = aero;
-        alone.ground = alone.ceiling = EffectModel::cheeseman_bennett;
-        const auto single = judge::SpaceSurfaces(scene, alone, robot).at_rotors(hubs_m);
+        const auto single = single_rotors.at_rotors(hubs_m);
         for (std::size_t i = 0; i < factors.size(); ++i) {
             strongest = std::max(strongest, factors[i].all - single[i].all);
         }
