@@ -41,7 +41,7 @@ one_library='search ompl_planners planner ompl'
 # The judge looks at plans independently. Of what computes flights it may use parameters, types, the formulas of surface effects
 # and the random numbers of worlds, and nothing else.
 judge_may='aeromap/aero_settings.hpp aeromap/direct_effect.hpp controllers/plan.hpp controllers/configuration.hpp controllers/reference_point.hpp controllers/space_axes.hpp controllers/space_reference.hpp
-dynamics/plant.hpp dynamics/plant_model.hpp effects/effect_models.hpp scene/planar_pose.hpp scene/plane_of_motion.hpp scene/shapes.hpp simulation/flight_model.hpp
+dynamics/plant.hpp dynamics/plant_model.hpp effects/effect_models.hpp effects/rotor_layout.hpp scene/planar_pose.hpp scene/plane_of_motion.hpp scene/shapes.hpp simulation/flight_model.hpp
 simulation/contact_goal.hpp simulation/goal.hpp simulation/noise.hpp simulation/robot.hpp simulation/space_goal.hpp simulation/space_robot.hpp simulation/space_touch.hpp simulation/space_world_description.hpp simulation/space_world_parameters.hpp simulation/uncertainty.hpp simulation/world.hpp simulation/world_parameters.hpp results/claims.hpp'
 
 # The headers that a module keeps to itself stand behind PRIVATE_HEADERS in its CMakeLists.txt.

@@ -147,14 +147,20 @@ SpaceCommands SpaceControl::command(const SpaceCoordinates& seen, const std::vec
 }
 
 std::vector<double> SpaceControl::ratios(const SpaceInversion& law, const Tick& tick) const {
-    std::vector<double> ratio(nominal_.rotors.size(), 1);
-    for (std::size_t i = 0; law.feed_forward && i < ratio.size(); ++i) {
-        const Vector3d hub_m =
-            tick.seen.position_m - vector_of(law.feed_forward_offset_m) + tick.attitude * nominal_.rotors[i].hub_m;
-        constexpr double least_ratio = 0.1;
-        ratio[i] = std::max(tick.surfaces.thrust_ratio(hub_m, tick.attitude * nominal_.rotors[i].axis), least_ratio);
+    if (!law.feed_forward) {
+        return std::vector<double>(nominal_.rotors.size(), 1);
     }
-    return ratio;
+    std::vector<Vector3d> hubs_m, axes;
+    for (const FlyingRotor& rotor : nominal_.rotors) {
+        hubs_m.push_back(tick.seen.position_m - vector_of(law.feed_forward_offset_m) + tick.attitude * rotor.hub_m);
+        axes.push_back(tick.attitude * rotor.axis);
+    }
+    constexpr double least_ratio = 0.1;
+    std::vector<double> ratios = tick.surfaces.thrust_ratios(hubs_m, axes);
+    for (double& ratio : ratios) {
+        ratio = std::max(ratio, least_ratio);
+    }
+    return ratios;
 }
 
 VectorXd SpaceControl::within_limits(const VectorXd& joints_nm, double& saturation) const {

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <string>
+#include <optional>
 #include <utility>
 
-#include "downwash/base/key_error.hpp"
-#include "downwash/effects/effect_models.hpp"
 #include "downwash/judge/placement.hpp"
 #include "downwash/judge/space_goals.hpp"
 #include "downwash/judge/space_loop.hpp"
@@ -19,25 +17,6 @@ namespace {
 
 /// A hover of this length brings a vehicle to rest at its start.
 constexpr double settling_s = 20;
-
-/// @return nullptr where surfaces do nothing
-std::shared_ptr<const DirectEffect> effect_of(const SpaceRobot& robot, const std::vector<Obstacle>& obstacles,
-                                              const AeroSettings& aero) {
-    if (!aero.enabled) {
-        return nullptr;
-    }
-    const std::pair<EffectModel, const char*> sides[] = {{aero.ground.model, "aero.ground"},
-                                                         {aero.ceiling.model, "aero.ceiling"}};
-    for (const auto& [model, key] : sides) {
-        if (!aero.map && is_multirotor(model)) {
-            throw_input_error("is a model of several rotors: the judge knows those of a single rotor in space", key);
-        }
-    }
-    if (aero.wall.is_any()) {
-        throw_input_error("the judge does not know what walls do in space", "aero.wall");
-    }
-    return std::make_shared<const DirectEffect>(std::make_shared<const Scene>(obstacles), aero, robot.rotor_radius_m);
-}
 
 SpaceCoordinates coordinates_of(const SpaceJudgedMotion& motion, int joints) {
     SpaceCoordinates at;
@@ -133,14 +112,19 @@ void judge_goals(const SpaceGoals& goals, const std::vector<FlownStay>& stays, c
 struct SpaceJudge::Shared {
     SpaceRobot robot;
     std::vector<Obstacle> all;
-    std::shared_ptr<const DirectEffect> effect;
+    std::optional<SpaceSurfaces> surfaces;  ///< empty where they do nothing
     SpaceObstacles obstacles;
     SpaceControl control;
 };
 
 SpaceJudge::SpaceJudge(const SpaceRobot& robot, const std::vector<Obstacle>& obstacles, const AeroSettings& aero)
-    : shared_(
-          new Shared{robot, obstacles, effect_of(robot, obstacles, aero), {obstacles, robot}, SpaceControl(robot)}) {}
+    : shared_(new Shared{robot,
+                         obstacles,
+                         aero.enabled ? std::optional<SpaceSurfaces>(
+                                            std::in_place, std::make_shared<const Scene>(obstacles), aero, robot)
+                                      : std::nullopt,
+                         {obstacles, robot},
+                         SpaceControl(robot)}) {}
 
 SpaceJudge::~SpaceJudge() = default;
 
@@ -148,9 +132,9 @@ SpaceJudgedFlight SpaceJudge::fly(const SpacePlan& plan, const SpaceFlightCondit
     const Shared& shared = *shared_;
     const SpaceWorld nominal_world{};
     const SpaceWorld world = conditions.world.value_or(nominal_world);
-    const auto effect = conditions.aero ? shared.effect : nullptr;
-    const SpaceSurroundings surfaces(effect, world);
-    const SpaceSurroundings nominal_surfaces(effect, nominal_world);
+    const SpaceSurfaces* felt = conditions.aero && shared.surfaces ? &*shared.surfaces : nullptr;
+    const SpaceSurroundings surfaces(felt, world);
+    const SpaceSurroundings nominal_surfaces(felt, nominal_world);
     const SpaceVehicle vehicle = vehicle_in(world, shared.robot);
     const SpacePlant plant(vehicle, surfaces);
     const SpaceCoordinates start = coordinates_of(conditions.start, shared.robot.joints());

@@ -33,8 +33,7 @@ struct SpaceFlightConditions {
 /// effects with the planner, and nothing that computes a flight (judge/README.md). Safe to share between threads.
 class DOWNWASH_EXPORT SpaceJudge {
  public:
-    /// @throws InputError if a setting of the air is out of range or one that the judge does not know: models of
-    /// several rotors, walls
+    /// @throws InputError if a setting of the air is out of range
     /// @pre space_robot_errors(robot) is empty, Scene would take the obstacles
     SpaceJudge(const SpaceRobot& robot, const std::vector<Obstacle>& obstacles, const AeroSettings& aero);
     ~SpaceJudge();

@@ -9,6 +9,7 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "downwash/judge/space_air.hpp"
 #include "downwash/judge/space_touching.hpp"
@@ -93,18 +94,33 @@ Eigen::VectorXd SpacePlant::accelerations(const BodyMotions& bodies, const std::
                                           const Eigen::VectorXd& joints_nm, const Vector3d& wind_m_s,
                                           double* contact_n) const {
     std::vector<BodyLoad> loads(bodies.size());
-    std::vector<double> acting_n;
     const BodyMotion& body = bodies.front();
+    std::vector<double> acting_n;
+    std::vector<Vector3d> hubs_m, axes;
+    Vector3d center = Vector3d::Zero();  // between the rotors
+    Vector3d mean_axis = Vector3d::Zero();
     Vector3d spin = Vector3d::Zero();
     for (std::size_t i = 0; i < vehicle_.rotors.size(); ++i) {
         const FlyingRotor& rotor = vehicle_.rotors[i];
-        const Vector3d axis = body.attitude * rotor.axis;
         const Vector3d lever = body.attitude * rotor.hub_m;
         acting_n.push_back(rotor.thrust_of * thrust_n[i]);
-        loads.front().push(lever, surroundings_.thrust_ratio(body.position_m + lever, axis) * acting_n.back() * axis);
-        loads.front().torque_nm += rotor.reaction_m * thrust_n[i] * axis;
-        spin += rotor.spin * vehicle_.spin_kg_m2_s_n0p5 * std::sqrt(std::max(thrust_n[i], 0.0)) * axis;
+        hubs_m.push_back(body.position_m + lever);
+        axes.push_back(body.attitude * rotor.axis);
+        center += lever / static_cast<double>(vehicle_.rotors.size());
+        mean_axis += axes.back();
+        loads.front().torque_nm += rotor.reaction_m * thrust_n[i] * axes.back();
+        spin += rotor.spin * vehicle_.spin_kg_m2_s_n0p5 * std::sqrt(std::max(thrust_n[i], 0.0)) * axes.back();
     }
+    const std::vector<double> ratios = surroundings_.thrust_ratios(hubs_m, axes);
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+        loads.front().push(hubs_m[i] - body.position_m, ratios[i] * acting_n[i] * axes[i]);
+    }
+    const double free_air_n = std::accumulate(acting_n.begin(), acting_n.end(), 0.0);
+    mean_axis.normalize();
+    loads.front().push(center, surroundings_.fountain(hubs_m, mean_axis) * free_air_n * mean_axis);
+    const auto wall = surroundings_.walls(body.position_m + center, free_air_n);
+    loads.front().force_n += wall.force_n;
+    loads.front().torque_nm += wall.torque_nm;
     loads.front().torque_nm -= body.rate_rad_s.cross(spin);
     add_drag(vehicle_, bodies, wind_m_s, loads);
     add_wash(vehicle_, bodies, acting_n, wind_m_s, loads);

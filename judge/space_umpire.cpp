@@ -165,10 +165,10 @@ double SpaceUmpire::max_speed_m_s(const SpaceVehicle& vehicle, const BodyMotions
 }
 
 bool SpaceUmpire::is_flyable(const SpaceLoop& loop) const {
-    if (surfaces_.effect() == nullptr) {
+    if (surfaces_.surfaces() == nullptr) {
         return true;
     }
-    const double distance_m = surfaces_.effect()->settings().min_distance_radii * robot_.rotor_radius_m;
+    const double distance_m = surfaces_.surfaces()->settings().min_distance_radii * robot_.rotor_radius_m;
     const BodyMotion& body = loop.state().bodies.front();
     const std::vector<FlyingRotor>& rotors = loop.plant().vehicle().rotors;
     return std::all_of(rotors.begin(), rotors.end(), [&](const FlyingRotor& rotor) {

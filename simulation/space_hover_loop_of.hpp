@@ -237,7 +237,8 @@ class SpaceHoverLoopOf final : public SpaceHoverLoop {
         AskedPlaces places;
         places.has_fountain = plant.has_fountain;
         places.has_walls = plant.has_walls;
-        places.center_m = place() + dynamics::rotation_of(at_rest_.plant.q + 3) * plant.center_m;
+        places.attitude = dynamics::rotation_of(at_rest_.plant.q + 3);
+        places.center_m = place() + places.attitude * plant.center_m;
         const auto* law = std::get_if<SpaceInversion>(&model_.law);
         for (int i = 0; i < plant.rotor_count; ++i) {
             places.hub_m.push_back(hub(i));
