@@ -10,7 +10,7 @@
 #include "downwash/scene/space_robot_shape.hpp"
 #include "downwash/simulation/space_robot.hpp"
 
-// Joint angles with which the arm of a level robot points somewhere, in closed form (docs/model.md 7.8).
+// Joint angles with which the arm of a level robot points somewhere, in closed form (docs/model.md 7.10).
 
 namespace downwash {
 

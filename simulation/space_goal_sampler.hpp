@@ -15,7 +15,7 @@
 #include "downwash/simulation/space_goal.hpp"
 #include "downwash/simulation/space_robot.hpp"
 
-// Configurations of a level robot that meet a goal in space, in closed form (docs/model.md 7.8).
+// Configurations of a level robot that meet a goal in space, in closed form (docs/model.md 7.10).
 
 namespace downwash {
 
