@@ -398,10 +398,26 @@ struct SpaceGoalSampler::Impl {
     }
 
     template <class Visit>
-    void for_each_heading(const Aim& aim, const SpaceConfiguration& from, const Visit& visit) const {
-        for (const JointAngles& joints : aimed(aim, within_limits(heading_of(from).joints))) {
-            visit(Heading{joints, nearest_yaw(yaws_of(aim, arm, joints), from[space::yaw])});
+    void for_each_heading(const Aim& aim, const Heading& start, const Visit& visit) const {
+        for (const JointAngles& joints : aimed(aim, start.joints)) {
+            visit(Heading{joints, nearest_yaw(yaws_of(aim, arm, joints), start.yaw_rad)});
         }
+    }
+
+    /// Brings yaw and joints without limits to within half a turn of those of another configuration.
+    void turn_next_to(const SpaceConfiguration& other, SpaceConfiguration& at) const {
+        for (std::size_t axis = space::yaw; axis < space::first_joint + arm.joints(); ++axis) {
+            const double way_rad = at[axis] - other[axis];
+            if ((axis == space::yaw || !arm.is_limited(axis - space::first_joint)) && std::abs(way_rad) > pi) {
+                at[axis] = other[axis] + lane::wrap_angle(way_rad);
+            }
+        }
+    }
+
+    /// Whether the first look finds the nearest place, or all that are looked for.
+    [[nodiscard]] bool is_complete(std::size_t number) const {
+        const SpaceGoalKind& kind = ones[number].goal.kind;
+        return std::holds_alternative<SpaceConfigurationGoal>(kind) || std::holds_alternative<SpaceContactGoal>(kind);
     }
 
     [[nodiscard]] JointAngles within_limits(JointAngles joints) const {
@@ -424,30 +440,30 @@ struct SpaceGoalSampler::Impl {
     }
 
     template <class Visit>
-    void each_near(const SpaceEndEffectorGoal& goal, const One&, const SpaceConfiguration& from, double share,
-                   const Visit& visit) const {
+    void each_near(const SpaceEndEffectorGoal& goal, const One&, const SpaceConfiguration& from, const Heading& start,
+                   double share, const Visit& visit) const {
         const auto place = [&](const Heading& heading) {
             visit(placed_near(from, heading, goal.position_m, share * goal.tolerance_m));
         };
         if (goal.direction) {
-            for_each_heading({arm.tool(), unit(*goal.direction), share * goal.direction_tolerance_rad}, from, place);
+            for_each_heading({arm.tool(), unit(*goal.direction), share * goal.direction_tolerance_rad}, start, place);
         } else {
-            place({within_limits(heading_of(from).joints), from[space::yaw]});
+            place(start);
         }
     }
 
     template <class Visit>
-    void each_near(const SpacePoseGoal& goal, const One& one, const SpaceConfiguration& from, double share,
-                   const Visit& visit) const {
-        for_each_heading({one.up_in_hand, up, share * goal.tolerance_rad, &one.attitude}, from,
+    void each_near(const SpacePoseGoal& goal, const One& one, const SpaceConfiguration& from, const Heading& start,
+                   double share, const Visit& visit) const {
+        for_each_heading({one.up_in_hand, up, share * goal.tolerance_rad, &one.attitude}, start,
                          [&](const Heading& heading) {
                              visit(placed_near(from, heading, goal.position_m, share * goal.tolerance_m));
                          });
     }
 
     template <class Visit>
-    void each_near(const SpaceCameraGoal& goal, const One&, const SpaceConfiguration& from, double share,
-                   const Visit& visit) const {
+    void each_near(const SpaceCameraGoal& goal, const One&, const SpaceConfiguration& from, const Heading& start,
+                   double share, const Visit& visit) const {
         const double middle_m = 0.5 * (goal.nearest_m + goal.farthest_m);
         const double half_m = 0.5 * share * (goal.farthest_m - goal.nearest_m);
         const auto place = [&](const Heading& heading, const Vector3& line) {
@@ -460,22 +476,23 @@ struct SpaceGoalSampler::Impl {
             place(heading, line_of(goal, yawed(heading.yaw_rad, arm.outward(heading.joints, arm.tool())), share));
         };
         if (goal.direction) {
-            for_each_heading(view_of(goal, arm.tool(), share), from, as_it_points);
+            for_each_heading(view_of(goal, arm.tool(), share), start, as_it_points);
         } else {
-            as_it_points({within_limits(heading_of(from).joints), from[space::yaw]});
+            as_it_points(start);
         }
-        // Looking at the target from where it is.
-        const Vector3 now = goal.target_m - end_of(from);
+        // Looking at the target from where it is, with its arm and yaw as they are.
+        const Vector3 now = goal.target_m - (Vector3{from[0], from[1], from[2]} +
+                                             yawed(start.yaw_rad, arm.end_effector_m(start.joints)));
         if (length_of(now) > 0) {
             const Vector3 line = line_of(goal, unit(now), share);
-            for_each_heading({arm.tool(), line, share * goal.aim_tolerance_rad}, from,
+            for_each_heading({arm.tool(), line, share * goal.aim_tolerance_rad}, start,
                              [&](const Heading& heading) { place(heading, line); });
         }
     }
 
     template <class Visit>
-    void each_near(const SpaceConfigurationGoal& goal, const One&, const SpaceConfiguration& from, double share,
-                   const Visit& visit) const {
+    void each_near(const SpaceConfigurationGoal& goal, const One&, const SpaceConfiguration& from, const Heading&,
+                   double share, const Visit& visit) const {
         SpaceConfiguration at = from;
         const std::array<bool, 3> is_given = given(goal);
         Vector3 off_m{};
@@ -505,8 +522,8 @@ struct SpaceGoalSampler::Impl {
     }
 
     template <class Visit>
-    void each_near(const SpaceContactGoal& goal, const One& one, const SpaceConfiguration& from, double share,
-                   const Visit& visit) const {
+    void each_near(const SpaceContactGoal& goal, const One& one, const SpaceConfiguration& from, const Heading& start,
+                   double share, const Visit& visit) const {
         constexpr std::size_t most_facets = 64;
         const Vector3 end_m = end_of(from);
         const std::size_t stride = 1 + one.facets.size() / most_facets;
@@ -523,9 +540,9 @@ struct SpaceGoalSampler::Impl {
                 }
             };
             if (goal.part == TouchingPart::frame) {
-                place({within_limits(heading_of(from).joints), from[space::yaw]});
+                place(start);
             } else {
-                for_each_heading({arm.tool(), -1 * n, share * touch_angle_rad}, from, place);
+                for_each_heading({arm.tool(), -1 * n, share * touch_angle_rad}, start, place);
             }
         }
     }
@@ -641,19 +658,44 @@ SpaceGoalSample SpaceGoalSampler::sample(Random& random, double share, int max_t
 }
 
 std::optional<SpaceGoalPlace> SpaceGoalSampler::nearest(const SpaceConfiguration& to, const SpaceMetric& metric,
-                                                        double share) const {
+                                                        double share, int refinements) const {
+    const Impl& own = *impl_;
     std::optional<SpaceGoalPlace> best;
     double least = HUGE_VAL;
-    for (std::size_t number = 0; number < impl_->ones.size(); ++number) {
-        const Impl::One& one = impl_->ones[number];
-        const auto consider = [&](const SpaceConfiguration& at) {
+    const auto look_from = [&](const Heading& start, std::size_t number) {
+        const Impl::One& one = own.ones[number];
+        const auto consider = [&](SpaceConfiguration at) {
+            own.turn_next_to(to, at);
             const double away = metric(to, at);
             if (away < least) {
                 best = SpaceGoalPlace{at, number};
                 least = away;
             }
         };
-        std::visit([&](const auto& kind) { impl_->each_near(kind, one, to, share, consider); }, one.goal.kind);
+        std::visit([&](const auto& kind) { own.each_near(kind, one, to, start, share, consider); }, one.goal.kind);
+    };
+    Heading given = Impl::heading_of(to);
+    given.joints = own.within_limits(given.joints);
+    for (std::size_t number = 0; number < own.ones.size(); ++number) {
+        look_from(given, number);
+    }
+    if (!best || own.is_complete(best->alternative)) {
+        return best;
+    }
+    // From beside the best one so far, nearer and nearer to it.
+    constexpr double first_step_rad = 2.5, factor = 0.9;
+    Random random(1);
+    double step_rad = first_step_rad;
+    for (int i = 0; i < refinements; ++i, step_rad *= factor) {
+        Heading beside = Impl::heading_of(best->at);
+        const std::size_t turned = random.index(own.arm.joints() + 1);  // one of them, or all
+        for (std::size_t joint = 0; joint < own.arm.joints(); ++joint) {
+            const double way_rad = step_rad * random.uniform(-1, 1);
+            beside.joints[joint] += turned == own.arm.joints() || turned == joint ? way_rad : 0;
+        }
+        beside.joints = own.within_limits(beside.joints);
+        beside.yaw_rad += step_rad * random.uniform(-1, 1);
+        look_from(beside, best->alternative);
     }
     return best;
 }

@@ -35,7 +35,7 @@ Both random_obstacles(test::Random& random) {
     const auto vector = [&](double size) {
         return Vector3{random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
     };
-    constexpr int count = 6;
+    constexpr int count = 18;
     for (int i = 0; i < count; ++i) {
         Obstacle one;
         one.center_world_m = vector(2);
