@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
-#include "downwash/base/bounds.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/space_bounds.hpp"
 #include "downwash/base/vector3.hpp"
 #include "downwash/controllers/space_limits.hpp"
 #include "downwash/controllers/yaw_mode.hpp"

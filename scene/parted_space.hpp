@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "downwash/base/bounds.hpp"
 #include "downwash/base/export.hpp"
+#include "downwash/base/space_bounds.hpp"
 #include "downwash/base/vector3.hpp"
 #include "downwash/scene/scene.hpp"
 

@@ -335,6 +335,16 @@ std::optional<JointAngles> SpaceArmAngles::drawn_with(const Vector3& of_hand, co
     if (joints_ == 0) {
         return has(at, of_hand, elevation) ? std::optional(at) : std::nullopt;
     }
+    // Where few of all angles will do: first each joint as near to the elevation as it gets.
+    constexpr double approaches = 0.25;
+    if (random.chance(approaches)) {
+        const double wanted = lane::sin_cos(random.uniform(elevation.low_rad, elevation.high_rad)).sine;
+        const std::size_t first = random.index(joints_);
+        for (std::size_t i = 0; i < joints_; ++i) {
+            const std::size_t joint = (first + i) % joints_;
+            at[joint] = upright(at, joint, of_hand).nearest_to(wanted, range_[joint]);
+        }
+    }
     if (joints_ == 1 || random.chance(0.5)) {
         const std::size_t joint = random.index(joints_);
         const double least = lane::sin_cos(elevation.low_rad).sine, most = lane::sin_cos(elevation.high_rad).sine;

@@ -77,7 +77,8 @@ class DOWNWASH_EXPORT SpaceArmAngles {
     [[nodiscard]] JointAngles drawn(Random& random) const;
 
     /// Angles with which a vector of the hand has an elevation within a range: all joints but one or two are drawn, the
-    /// others follow. Nothing where they cannot, which another try may mend.
+    /// others follow. Of every fourth try the drawn ones are first turned, one after the other, as near as they get.
+    /// Nothing where they cannot, which another try may mend.
     /// @param of_hand of length 1   @param elevation_rad within [-pi/2, pi/2]
     [[nodiscard]] std::optional<JointAngles> drawn_with(const Vector3& of_hand, const AngleRange& elevation_rad,
                                                         Random& random) const;

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "downwash/base/bounds.hpp"
 #include "downwash/base/export.hpp"
+#include "downwash/base/space_bounds.hpp"
 #include "downwash/scene/scene.hpp"
 #include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/space_goal.hpp"

@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
-#include "downwash/base/bounds.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/base/random.hpp"
+#include "downwash/base/space_bounds.hpp"
 #include "downwash/scene/scene.hpp"
 #include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/space_configuration.hpp"
@@ -72,9 +72,9 @@ class DOWNWASH_EXPORT SpaceGoalSampler {
 
     /// Among some places that use at most this share of the tolerances the one nearest to a configuration: as its arm
     /// is, if that does; with one joint turned, two, or one after the other; yaw and position follow by the shortest
-    /// way. Then the same from arms and yaws beside the best one so far, always the same ones. Nothing where none of the
-    /// first meets the goal, though others may. The place may have a flaw. Yaw and joints without limits are those next
-    /// to the given ones.
+    /// way. Then the same from arms and yaws beside the best one so far, always the same ones. Nothing where none of
+    /// the first meets the goal, though others may. The place may have a flaw. Yaw and joints without limits are those
+    /// next to the given ones.
     /// @param refinements how often to look beside the best one; of configurations and contacts never
     [[nodiscard]] std::optional<SpaceGoalPlace> nearest(const SpaceConfiguration& to, const SpaceMetric& metric,
                                                         double share, int refinements = 40) const;
