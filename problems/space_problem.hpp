@@ -9,6 +9,7 @@
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/space_bounds.hpp"
 #include "downwash/base/vector3.hpp"
 #include "downwash/controllers/space_limits.hpp"
 #include "downwash/controllers/yaw_mode.hpp"
@@ -19,11 +20,6 @@
 #include "downwash/simulation/uncertainty.hpp"
 
 namespace downwash {
-
-/// A box of the world [m]: where the multirotor's centre of mass may be.
-struct SpaceBounds {
-    Vector3 low_m = {}, high_m = {};  ///< low < high in each coordinate
-};
 
 /// Where a flight in space begins.
 struct SpaceStart {

@@ -11,10 +11,12 @@
 #include "downwash/problems/number_text.hpp"
 #include "downwash/problems/shared_checks.hpp"
 #include "downwash/problems/space_goal_parameters.hpp"
+#include "downwash/problems/space_goal_warnings.hpp"
 #include "downwash/problems/space_problem.hpp"
 #include "downwash/problems/space_problem_parameters.hpp"
 #include "downwash/scene/collision_checker.hpp"
 #include "downwash/scene/scene.hpp"
+#include "downwash/simulation/space_goal_reach.hpp"
 #include "downwash/simulation/space_robot_parameters.hpp"
 #include "downwash/simulation/space_statics.hpp"
 #include "downwash/simulation/world_parameters.hpp"
@@ -227,18 +229,32 @@ Errors unreachable(const Vector3& at_m, double tolerance_m, const SpaceProblem& 
                       " m; widen environment.bounds or move the goal"}};
 }
 
+/// A direction or an attitude that the joints do not allow.
+Errors misaimed(const SpaceGoalKind& kind, const SpaceProblem& p, const std::string& key) {
+    const std::optional<SpaceGoalObjection> objection = aim_objection(p.robot, {kind});
+    return objection ? Errors{{key + "." + objection->key, objection->reason}} : Errors();
+}
+
 Errors unclear(const SpaceEndEffectorGoal& goal, const SpaceProblem& p, const std::string& key) {
     Errors errors = directionless(goal.direction, key);
+    if (errors.empty()) {
+        append(errors, misaimed(goal, p, key));
+    }
     append(errors, unreachable(goal.position_m, goal.tolerance_m, p, key + ".position_m"));
     return errors;
 }
 
 Errors unclear(const SpacePoseGoal& goal, const SpaceProblem& p, const std::string& key) {
-    return unreachable(goal.position_m, goal.tolerance_m, p, key + ".position_m");
+    Errors errors = misaimed(goal, p, key);
+    append(errors, unreachable(goal.position_m, goal.tolerance_m, p, key + ".position_m"));
+    return errors;
 }
 
 Errors unclear(const SpaceCameraGoal& goal, const SpaceProblem& p, const std::string& key) {
     Errors errors = directionless(goal.direction, key);
+    if (errors.empty()) {
+        append(errors, misaimed(goal, p, key));
+    }
     if (goal.nearest_m >= goal.farthest_m) {
         errors.push_back({key + ".distance_m", "is [nearest, farthest]: expected the nearest below the farthest"});
     }
@@ -339,6 +355,7 @@ Errors space_problem_warnings(const SpaceProblem& problem) {
         warning.key.insert(0, "robot.");
     }
     append(warnings, no_margin(problem));
+    append(warnings, space_goal_warnings(problem));
     return warnings;
 }
 

@@ -59,15 +59,6 @@ SpaceGoalError error_of(const SpaceEndEffectorGoal& goal, const Seen& at) {
     return error;
 }
 
-/// R = Rz(yaw) Ry(pitch) Rx(roll) as a quaternion.
-std::array<double, 4> attitude_of(const Vector3& rpy_rad) {
-    const auto [sr, cr] = lane::sin_cos(0.5 * rpy_rad[0]);
-    const auto [sp, cp] = lane::sin_cos(0.5 * rpy_rad[1]);
-    const auto [sy, cy] = lane::sin_cos(0.5 * rpy_rad[2]);
-    return {cy * cp * cr + sy * sp * sr, cy * cp * sr - sy * sp * cr, cy * sp * cr + sy * cp * sr,
-            sy * cp * cr - cy * sp * sr};
-}
-
 SpaceGoalError error_of(const SpacePoseGoal& goal, const Seen& at) {
     const SpaceToolPose tool = tool_at(at.robot, at.pose);
     SpaceGoalError error;

@@ -10,6 +10,7 @@
 
 #include "downwash/base/lane_math.hpp"
 #include "downwash/simulation/goal.hpp"
+#include "downwash/simulation/space_configuration.hpp"
 #include "downwash/simulation/space_touch_place.hpp"
 
 namespace downwash {
@@ -17,16 +18,6 @@ namespace {
 
 std::span<const SpaceGoal> alternatives(const SpaceGoal& goal) {
     return goal.any_of.empty() ? std::span<const SpaceGoal>(&goal, 1) : std::span<const SpaceGoal>(goal.any_of);
-}
-
-/// The level vehicle at a reference point.
-SpacePose level_at(const SpacePoint& point) {
-    SpacePose pose;
-    std::copy_n(point.position, 3, pose.position_m.begin());
-    const auto [sine, cosine] = lane::sin_cos(0.5 * point.position[space::yaw]);
-    pose.attitude = {cosine, 0, 0, sine};
-    std::copy_n(point.position + space::first_joint, max_joints, pose.joints_rad.begin());
-    return pose;
 }
 
 SpacePose pose_of(const SpaceMotion& motion) {
@@ -55,7 +46,7 @@ struct SpaceGoalRule::Impl {
         FoundTouch found;
     };
     [[nodiscard]] Fit fit(std::size_t number, const SpacePoint& point) const {
-        const SpacePose pose = level_at(point);
+        const SpacePose pose = level_at(configuration_of(point));
         std::optional<Fit> best;
         const std::span<const SpaceGoal> all = alternatives(goals[number]);
         for (std::size_t i = 0; i < all.size(); ++i) {

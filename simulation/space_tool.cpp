@@ -49,6 +49,14 @@ double yaw_of(const std::array<double, 4>& q) noexcept {
     return lane::atan2(axes[1][0], axes[0][0]);
 }
 
+std::array<double, 4> attitude_of(const Vector3& rpy_rad) noexcept {
+    const auto [sr, cr] = lane::sin_cos(0.5 * rpy_rad[0]);
+    const auto [sp, cp] = lane::sin_cos(0.5 * rpy_rad[1]);
+    const auto [sy, cy] = lane::sin_cos(0.5 * rpy_rad[2]);
+    return {cy * cp * cr + sy * sp * sr, cy * cp * sr - sy * sp * cr, cy * sp * cr + sy * cp * sr,
+            sy * cp * cr - cy * sp * sr};
+}
+
 double angle_between_rad(const Vector3& a, const Vector3& b) noexcept {
     const Vector3 u = unit(a), v = unit(b);
     const Vector3 across = cross(u, v);

@@ -35,6 +35,9 @@ struct SpaceLinkPose {
 /// The heading of an attitude: that of its x axis in the level [rad].
 [[nodiscard]] DOWNWASH_EXPORT double yaw_of(const std::array<double, 4>& attitude) noexcept;
 
+/// R = Rz(yaw) Ry(pitch) Rx(roll) as a quaternion.
+[[nodiscard]] DOWNWASH_EXPORT std::array<double, 4> attitude_of(const Vector3& rpy_rad) noexcept;
+
 /// The angle between two vectors of any length but zero, 0 to pi [rad].
 [[nodiscard]] DOWNWASH_EXPORT double angle_between_rad(const Vector3& a, const Vector3& b) noexcept;
 

@@ -1,32 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <random>
+#include "downwash/base/random.hpp"
 
 namespace downwash::planning {
 
-/// The randomness of one search, seeded by the caller; the same numbers on every machine.
-class Random {
- public:
-    explicit Random(std::uint64_t seed) : engine_(seed) {}
-
-    /// Uniform in [low, high).
-    double uniform(double low, double high) {
-        constexpr double scale = 0x1p-53;
-        return low + (high - low) * (static_cast<double>(engine_() >> 11U) * scale);
-    }
-
-    /// Another source of numbers, which depends on what was drawn here before and on nothing that is drawn later.
-    [[nodiscard]] Random branch() { return Random(engine_()); }
-
-    /// True with this probability.
-    bool chance(double probability) { return uniform(0, 1) < probability; }
-
-    /// Whether both give the same numbers from now on.
-    friend bool operator==(const Random& a, const Random& b) { return a.engine_ == b.engine_; }
-
- private:
-    std::mt19937_64 engine_;
-};
+/// The randomness of one search.
+using downwash::Random;
 
 }  // namespace downwash::planning

@@ -1,0 +1,89 @@
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+#include "edits.hpp"
+#include "space_files.hpp"
+
+// What reading a problem in space tells of goals that cannot be met, with the place in the file.
+
+using namespace downwash;
+using namespace downwash::test;
+using Catch::Contains;
+using Catch::StartsWith;
+
+namespace {
+
+/// Warnings as "line:column: message".
+std::vector<std::string> warnings_of(const std::string& problem, const std::string& robot) {
+    const TestFolder folder;
+    folder.write("problem.yaml", problem);
+    folder.write("robot.yaml", robot);
+    std::vector<std::string> warnings;
+    static_cast<void>(read_space_problem(folder / "problem.yaml", {}, [&](const LocatedError& warning) {
+        warnings.push_back(std::to_string(warning.line) + ":" + std::to_string(warning.column) + ": " +
+                           warning.message);
+    }));
+    return warnings;
+}
+
+constexpr const char* goal =
+    "  end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}\n  hold_s: 5";
+constexpr const char* pole = "    - {name: pole,";
+
+std::string with_obstacle(const std::string& line) {
+    return edited(good_space_problem, pole, "    - " + line + "\n" + pole);
+}
+
+}  // namespace
+
+TEST_CASE("a goal in space that can be met has no warning") {
+    CHECK(warnings_of(std::string(good_space_problem), std::string(good_space_robot)).empty());
+}
+
+TEST_CASE("a goal in space that nothing meets freely is a warning with what is in the way") {
+    const std::vector<std::string> blocked =
+        warnings_of(with_obstacle("{name: block, box: {size_m: [2, 2, 2], center_m: [3, -2, 2.5]}}"),
+                    std::string(good_space_robot));
+    REQUIRE(blocked.size() == 1);
+    CHECK_THAT(blocked[0], StartsWith("12:3: goal.end_effector is met by no configuration of ") &&
+                               Contains(" are nearer than 0.05 m to an obstacle ('block')") &&
+                               Contains("; the nearest goal found is 1.6 m away, with position_m ["));
+}
+
+TEST_CASE("one alternative that can be met is enough") {
+    const std::string near = "{end_effector: {position_m: [3, -2, 2.5]}}",
+                      far = "{end_effector: {position_m: [0, 0, 2]}}";
+    const std::string block = with_obstacle("{name: block, box: {size_m: [2, 2, 2], center_m: [3, -2, 2.5]}}");
+    CHECK(warnings_of(edited(block, goal, "  any_of: [" + near + ", " + far + "]"), std::string(good_space_robot))
+              .empty());
+    CHECK(warnings_of(edited(block, goal, "  any_of: [" + near + ", " + near + "]"), std::string(good_space_robot))
+              .size() == 2);
+}
+
+TEST_CASE("a goal in space behind a wall is a warning with the wall") {
+    const std::vector<std::string> behind =
+        warnings_of(with_obstacle("{name: wall, box: {size_m: [0.01, 20, 20], center_m: [0, 0, 0]}}"),
+                    std::string(good_space_robot));
+    REQUIRE(behind.size() == 1);
+    CHECK_THAT(behind[0], StartsWith("12:3: goal.end_effector is cut off from the start: not even a ball of 0.05 m") &&
+                              Contains("'wall'"));
+    // A gap of a metre below the top of the bounds.
+    CHECK(warnings_of(with_obstacle("{name: wall, box: {size_m: [0.01, 20, 4], center_m: [0, 0, 2]}}"),
+                      std::string(good_space_robot))
+              .empty());
+}
+
+TEST_CASE("a direction that the joints do not allow is an error with the range that they do") {
+    const std::string stiff = edited(good_space_robot, "limits_deg: [-120, 120]", "limits_deg: [-30, 30]");
+    CHECK(space_errors(TestFolder(), good_space_problem, stiff) ==
+          "problem.yaml:11:73: goal.end_effector.direction is 90 degrees above the level, give or take 5: with its "
+          "joints within their limits the end effector of the level robot points -30 to 30 degrees above it; the "
+          "nearest direction is [0.866, 0, 0.5], or give the arm other joints or limits");
+    const std::string pose =
+        edited(good_space_problem, "end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
+               "pose: {position_m: [3, -2, 2.5], rpy_deg: [180, 0, 0]}");
+    CHECK_THAT(space_errors(TestFolder(), pose, good_space_robot),
+               StartsWith("problem.yaml:11:37: goal.pose.rpy_deg is an attitude that the level robot misses by 60 "
+                          "degrees at any yaw, with its joints within their limits; the nearest one is ["));
+}
