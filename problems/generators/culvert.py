@@ -46,7 +46,6 @@ def problems():
         "places of a joint between precast units: at the roof, and at the haunch of the far wall. Its arm is on top.",
     ]
     problem = Problem("culvert", about, "Enter a skewed box culvert and look at a joint, at the roof and at a haunch.", "snu_f550_arm2", "culvert.py")
-    problem.source("Ground and invert at the same height.")
     problem.between("ground", (-25, -20, -2), (25, 20, -WALL))
     problem.source(
         "The barrel: 12 x 12 ft inside, walls, slabs and haunches of 12 in, as precast boxes of this size by ASTM C1577. It lies below",
@@ -54,17 +53,14 @@ def problems():
     )
     content = binary_stl(barrel(half_length), "box culvert, metres; made by make_space_problems.py")
     problem.mesh("barrel", "meshes/skewed_culvert.stl", content)
-    # The aprons in front of the mouths are level with the invert.
     problem.source("Aprons level with the invert; parapets of 1'-6\" over the roof and 1 ft thick (assumed).")
     skew = math.radians(SKEW_DEG)
     half_width = SPAN / 2 + WALL
     for name, sign in (("near", -1), ("far", 1)):
-        apron = 4.0
-        problem.box(
-            f"{name}_apron",
-            (apron, 2 * half_width, WALL),
-            (sign * (half_length + apron / 2 + half_width * math.tan(skew)), 0, -WALL / 2),
-        )
+        # From the inner end of the mouth, below the barrel's floor, to 4 m before its outer end.
+        near, far = (half_length + side * half_width * math.tan(skew) for side in (-1, 1))
+        length = far + 4 - near
+        problem.box(f"{name}_apron", (length, 2 * half_width, WALL), (sign * (near + length / 2), 0, -WALL / 2))
         # Along the skewed end.
         problem.box(
             f"{name}_parapet",

@@ -15,7 +15,7 @@ GAP = 0.025  # between a flange and the next line, at least
 LOWER = (600, 400, 300, 200, 100, None, 300, 150)
 UPPER = (250, 150, None, 200, 100, 100)
 TARGET = 6  # of the lower tier
-TOOL = 0.05  # over the flange
+TOOL = 0.1  # over the flange
 
 
 def places_across(lines, width):

@@ -51,7 +51,8 @@ def problems():
     problem.bounds = (-6, -4, 0.5), (6, 4, 6.9)
     problem.start = {"x_m": -5, "y_m": -2, "z_m": 1.5, "yaw_deg": 0}
     crown = {"position_m": (JOINT_X, 0, CENTER_Z + RADIUS - 0.1), "tolerance_m": 0.05, "direction": (0, 0, 1), "direction_tolerance_deg": 15}
-    anchor_y = APART / 2 - 0.4
+    # The nut of the rod that is nearest to the crown, on the side of the crown.
+    anchor_y = APART / 2 - 0.4 - 0.025
     anchor = (0.75, anchor_y, CENTER_Z + math.sqrt(RADIUS**2 - anchor_y**2) - 0.05)
     look = {"target_m": anchor, "distance_m": (0.4, 1), "direction": (0, 1, 1), "view_cone_deg": 45}
     problem.goal = listed([goal("end_effector", crown), goal("camera", look)])
