@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
-"""Makes the problems of problems/space/ that stand for real structures, and the meshes and octrees that they refer to.
+"""Makes the problems of problems/space/ with the sizes of real structures, and the meshes and octrees that they refer
+to.
 
-Run it anywhere: python3 problems/make_space_problems.py. It needs nothing but Python 3. With --check it compares and writes
-nothing; with --seed N DIR it writes a girder bay and a pipe rack of random sizes into DIR, beside copies of their robots.
+Run it anywhere: python3 problems/make_space_problems.py. It needs nothing but Python 3. With --check it compares and
+writes nothing; with --seed N DIR it writes a girder bay and a pipe rack of random sizes into DIR, beside copies of
+their robots.
 """
 
 import sys
 
-from generators import around_a_pier, box_girder_chamber, culvert, girder_bay, pipe_rack, tank_shell, tunnel_crown, window
+from generators import around_a_pier, box_girder_chamber, culvert, girder_bay
+from generators import pipe_rack, tank_shell, tunnel_crown, window
 from generators.shipped_files import PROBLEMS, check_or_write, write_files
 
 FAMILIES = [girder_bay, pipe_rack, culvert, tank_shell, box_girder_chamber, tunnel_crown, window, around_a_pier]

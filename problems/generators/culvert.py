@@ -3,7 +3,7 @@
 import math
 
 from .geometry_files import binary_stl, prism
-from .problem_text import Problem, goal, listed
+from .problem_text import Problem, listed, view_of
 from .profiles import along_skewed_x
 
 SPAN = RISE = 3.658  # 12 ft
@@ -16,8 +16,8 @@ WING_DEG = 30
 
 
 def barrel(half_length):
-    """Walls, slabs and haunches as one closed mesh: eight convex pieces around the opening. The road runs along the ends, which
-    are askew to the axis x; the invert is at z = 0."""
+    """Walls, slabs and haunches as one closed mesh: eight convex pieces around the opening. The road runs along the
+    ends, which are askew to the axis x; the invert is at z = 0."""
     y, z, t = SPAN / 2, RISE, WALL
     outer = [(-y - t, -t), (y + t, -t), (y + t, z + t), (-y - t, z + t)]
     inner = [(-y + t, 0), (y - t, 0), (y, t), (y, z - t), (y - t, z), (-y + t, z), (-y, z - t), (-y, t)]
@@ -41,15 +41,16 @@ def problems():
     half_length = ROAD / math.cos(math.radians(SKEW_DEG)) / 2
     about = [
         "Joints inside a box culvert that crosses below a road askew.",
-        "",
-        "The vehicle starts outside, beside the axis of the culvert. It enters between a wing wall and a skewed mouth, and looks at two",
-        "places of a joint between precast units: at the roof, and at the haunch of the far wall. Its arm is on top.",
+        "The vehicle starts outside, behind a wing wall. It enters by a skewed mouth and looks at two places of a joint "
+        "between precast units: at the roof, and at the haunch of the far wall. Its arm is on top.",
     ]
-    problem = Problem("culvert", about, "Enter a skewed box culvert and look at a joint, at the roof and at a haunch.", "snu_f550_arm2", "culvert.py")
+    description = "Enter a skewed box culvert and look at a joint, at the roof and at a haunch."
+    problem = Problem("culvert", about, description, "snu_f550_arm2", "culvert.py")
     problem.between("ground", (-25, -20, -2), (25, 20, -WALL))
     problem.source(
-        "The barrel: 12 x 12 ft inside, walls, slabs and haunches of 12 in, as precast boxes of this size by ASTM C1577. It lies below",
-        "two lanes of 12 ft with shoulders of 8 ft (AASHTO), 30 degrees askew (assumed). x is its axis.",
+        "The barrel: 12 x 12 ft inside, walls, slabs and haunches of 12 in, as precast boxes of this size by ASTM C1577, "
+        "in units of 6 ft. It lies below two lanes of 12 ft with shoulders of 8 ft (AASHTO), 30 degrees askew (assumed). "
+        "x is its axis."
     )
     content = binary_stl(barrel(half_length), "box culvert, metres; made by make_space_problems.py")
     problem.mesh("barrel", "meshes/skewed_culvert.stl", content)
@@ -83,7 +84,7 @@ def problems():
     joint_x = -half_length + 4 * UNIT
     problem.bounds = (-half_length - 7, -6, 0.3), (half_length + 2, 6, 6)
     problem.start = {"x_m": -half_length - 5, "y_m": -3, "z_m": 1.5, "yaw_deg": 0, "joints_deg": (-60, 100)}
-    roof = {"target_m": (joint_x, 0.6, RISE), "distance_m": (0.4, 1), "direction": (0, 0, 1), "view_cone_deg": 30}
-    haunch = {"target_m": (joint_x, SPAN / 2 - WALL / 2, RISE - WALL / 2), "distance_m": (0.4, 1), "direction": (0, 1, 1), "view_cone_deg": 30}
-    problem.goal = listed([goal("camera", roof), goal("camera", haunch)])
+    haunch = joint_x, SPAN / 2 - WALL / 2, RISE - WALL / 2
+    views = [view_of((joint_x, 0.6, RISE), 0.4, 1, (0, 0, 1), 30), view_of(haunch, 0.4, 1, (0, 1, 1), 30)]
+    problem.goal = listed(views)
     return [problem]

@@ -10,8 +10,8 @@ def convex_face(corners):
 
 
 def prism(polygons, outline, place_low, place_high):
-    """The solid between two planes: its ends made of convex polygons, its sides of the outline. Polygons and outline are
-    points (a, b), counter-clockwise seen against the way from the low end to the high one.
+    """The solid between two planes: its ends made of convex polygons, its sides of the outline. Polygons and outline
+    are points (a, b), counter-clockwise seen against the way from the low end to the high one.
 
     @param place_low,place_high make a place of a point (a, b) at that end
     """

@@ -4,7 +4,7 @@ import itertools
 import math
 
 from .geometry_files import MIDDLE, binary_stl, octomap, prism
-from .problem_text import Problem, goal, number, one
+from .problem_text import Problem, number, one, tool_at
 
 # FHWA NHI-04-041, LRFD design example for a steel girder superstructure bridge (2003), in metres.
 DESIGN_EXAMPLE = {
@@ -37,10 +37,12 @@ def drawn_sizes(random):
 
 
 class Bay:
-    """Places that follow from the sizes. The road is at z = 0, the middle girder along x, the middle cross frame at 0."""
+    """Places that follow from the sizes. The road is at z = 0, the middle girder along x, the middle cross frame at
+    x = 0."""
 
     def __init__(self, sizes):
-        self.spacing, self.web, self.flange, self.panel = (sizes[key] for key in ("spacing", "web", "flange", "panel"))
+        self.spacing, self.web, self.flange = sizes["spacing"], sizes["web"], sizes["flange"]
+        self.panel = sizes["panel"]
         self.web_low = CLEARANCE + BOTTOM_FLANGE
         self.web_high = self.web_low + self.web
         self.deck_low = self.web_high + HAUNCH
@@ -83,8 +85,8 @@ class Bay:
     def add_all(self, problem):
         self.add_girders(problem)
         problem.source(
-            f"Cross frames every {number(self.panel)} m (example: 20 ft) of angles L 3 1/2 x 3 1/2 (assumed), gussets of",
-            "0.3 x 0.3 m (assumed).",
+            f"Cross frames every {number(self.panel)} m (example: 20 ft) of angles L 3 1/2 x 3 1/2 (assumed), gussets "
+            "of 0.3 x 0.3 m (assumed)."
         )
         for frame in range(len(self.frames_x)):
             for bay in range(GIRDERS - 1):
@@ -96,19 +98,20 @@ class Bay:
         side = 1 if at_left else -1
         girder_y = self.girders_y[goal_bay if at_left else goal_bay + 1]
         y = girder_y + side * (WEB_THICKNESS / 2 + GUSSET[1] / 2)
-        problem.bounds = (-self.panel, self.girders_y[0] - 1, 0.5), (self.panel, self.girders_y[-1] + 1, self.web_high)
+        half_width = self.girders_y[-1] + 1
+        problem.bounds = (-self.panel, -half_width, 0.5), (self.panel, half_width, self.web_high)
         start_y = (self.girders_y[start_bay] + self.girders_y[start_bay + 1]) / 2
         problem.start = {"x_m": self.panel / 2, "y_m": start_y, "z_m": self.low_z, "yaw_deg": 180}
         problem.start["joints_deg"] = (-90, 150)
-        tool = {"position_m": (x, y, z), "tolerance_m": 0.05, "direction": (1, -side, 0), "direction_tolerance_deg": 20}
-        problem.goal = one(goal("end_effector", tool))
+        problem.goal = one(tool_at((x, y, z), (1, -side, 0), 20))
 
 
 def source_of_girders(problem, bay):
     problem.source(
-        f"FHWA NHI-04-041, a design example of a steel girder bridge: five girders {number(bay.spacing)} m apart (example: 9'-9\"),",
-        f"webs {number(bay.web)} m high (54\") and 1/2\" thick, flanges {number(bay.flange)} m wide (14\"), the lower one 7/8\" thick;",
-        "3 1/2\" from the web to the slab, a slab of 8 1/2\" that ends 3'-11 1/2\" beyond the outer girders.",
+        "FHWA NHI-04-041, a design example of a steel girder bridge: five girders "
+        f"{number(bay.spacing)} m apart (example: 9'-9\"), webs {number(bay.web)} m high (54\") and 1/2\" thick, flanges "
+        f"{number(bay.flange)} m wide (14\"), the lower one 7/8\" thick; 3 1/2\" from the web to the slab, a slab of "
+        "8 1/2\" that ends 3'-11 1/2\" beyond the outer girders."
     )
 
 
@@ -125,14 +128,13 @@ def with_boxes(name="girder_bay", random=None):
     bay = Bay(DESIGN_EXAMPLE if random is None else drawn_sizes(random))
     about = [
         "A gusset of a cross frame between the girders of a bridge.",
-        "",
-        "The vehicle starts between two girders, with its arm folded. It has to leave that bay downwards, pass under the girders and",
-        "rise into another bay, where the deck and the flanges pull at its rotors. There the tool points at the upper gusset of a",
-        "cross frame, out of the bay.",
+        "The vehicle starts between two girders, with its arm folded. It has to leave that bay downwards, pass under the "
+        "girders and rise into another bay, where the deck and the flanges pull at its rotors. There the tool points at "
+        "the upper gusset of a cross frame, out of the bay.",
     ]
     if random is not None:
         about.append("Spacing, depth, flanges, panel, start and goal are drawn at random.")
-    problem = new_problem(name, about, "Look at a gusset of a cross frame from another bay of a girder bridge.")
+    problem = new_problem(name, about, "Point at a gusset of a cross frame, from another bay of a girder bridge.")
     add_road(problem)
     source_of_girders(problem, bay)
     bay.add_all(problem)
@@ -182,17 +184,18 @@ def cells_of(solid):
 
 
 def of_a_survey(boxes, kind):
-    """The same bay as one obstacle from a file. @param boxes the problem with boxes   @param kind "mesh" or "octomap" """
+    """The same bay as one obstacle from a file. @param boxes the problem with boxes   @param kind mesh or octomap"""
     bay = Bay(DESIGN_EXAMPLE)
     bridge = [solid for solid in boxes.solids if solid[0] != "road"]
-    kept = {"mesh": "a mesh, as a design model has it", "octomap": f"an octree with cells of {number(RESOLUTION)} m, as a scan gives it"}
-    about = [f"girder_bay.yaml with the bridge as one obstacle: {kept[kind]}."]
-    problem = new_problem(f"girder_bay_{kind}", about, f"The girder bay as {kept[kind].split(',')[0]}.")
+    form = "a mesh" if kind == "mesh" else f"an octree with cells of {number(RESOLUTION)} m"
+    about = [f"girder_bay.yaml with the bridge as one obstacle, {form}."]
+    problem = new_problem(f"girder_bay_{kind}", about, f"The girder bay as {form}.")
     add_road(problem)
     source_of_girders(problem, bay)
     if kind == "mesh":
         triangles = [triangle for solid in bridge for triangle in triangles_of(solid)]
-        problem.mesh("bridge", "meshes/girder_bay.stl", binary_stl(triangles, "girder bay, metres; made by make_space_problems.py"))
+        content = binary_stl(triangles, "girder bay, metres; made by make_space_problems.py")
+        problem.mesh("bridge", "meshes/girder_bay.stl", content)
     else:
         cells = set().union(*(cells_of(solid) for solid in bridge))
         content = octomap(cells, RESOLUTION, "girder bay; made by make_space_problems.py")

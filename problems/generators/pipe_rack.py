@@ -77,23 +77,25 @@ def make(name="pipe_rack", random=None):
         target = [i for i, size in enumerate(lower) if size][chosen]
     about = [
         "A flange between the tiers of a pipe rack.",
-        "",
-        "The vehicle starts beside the rack, near the ground. It has to fly in between the tiers, past a tie beam, and cross over the",
-        "lines of the lower tier below those of the upper one. The gripper ends upright over a flange, across its line.",
+        "The vehicle starts beside the rack, near the ground. It has to fly in between the tiers, past a tie beam, and "
+        "cross over the lines of the lower tier below those of the upper one. The gripper ends upright over a flange, "
+        "across its line.",
     ]
     if random is not None:
         about.append("Width, bents, tiers, lines and flange are drawn at random.")
-    problem = Problem(name, about, "Cross a pipe rack between its tiers, to a flange.", "hexa370_arm3", "pipe_rack.py")
+    description = "Cross a pipe rack between its tiers, to a flange."
+    problem = Problem(name, about, description, "hexa370_arm3", "pipe_rack.py")
     problem.between("ground", (-20, -20, -1), (20, 20, 0))
     problem.source(
-        f"A rack {number(width)} m wide with bents every {number(bent)} m and beams at {number(tiers[0])} and {number(tiers[1])} m: usual sizes are 6, 8 or 10 m,",
-        "6 m, and 4.5 m under the first tier. Columns and beams: HE 300 B, 300 x 300 mm (EN 10365). Ties half-way between the",
-        "tiers: HE 200 B (assumed).",
+        f"A rack {number(width)} m wide with bents every {number(bent)} m and beams at {number(tiers[0])} and "
+        f"{number(tiers[1])} m. Usual (pipingengineer.org): 6, 8 or 10 m wide and 4.5 m under the first tier; bents "
+        "every 6 m. Columns and beams: HE 300 B, 300 x 300 mm (EN 10365). Ties half-way between the tiers: HE 200 B "
+        "(assumed)."
     )
     add_frames(problem, width, bent, tiers)
     problem.source(
-        f"Lower tier: nominal sizes {sizes_text(lower)}, outside diameters of ASME B36.10M; apart by their class 150",
-        "flanges (ASME B16.5) and equal gaps, with a fifth of the width left for future lines.",
+        f"Lower tier: nominal sizes {sizes_text(lower)}, outside diameters of ASME B36.10M; apart by their class 150 "
+        "flanges (ASME B16.5) and equal gaps, with a fifth of the width left for future lines."
     )
     lower_y, upper_y = places_across(lower, width), places_across(upper, width)
     add_lines(problem, "lower", lower, lower_y, tiers[0], 1.25 * bent)
@@ -107,8 +109,9 @@ def make(name="pipe_rack", random=None):
     problem.bounds = (-bent, -reach, 0.5), (bent, reach, tiers[1] + 2)
     near = -1 if y > 0 else 1
     problem.start = {"x_m": -bent / 2, "y_m": near * (width / 2 + 2), "z_m": 1.5, "yaw_deg": -near * 90}
-    at = {"position_m": (x, y, z + FLANGES[size] / 2 + TOOL), "rpy_deg": (0, 0, -near * 90), "tolerance_m": 0.03, "tolerance_deg": 10}
-    problem.goal = one(goal("pose", at))
+    at = x, y, z + FLANGES[size] / 2 + TOOL
+    pose = {"position_m": at, "rpy_deg": (0, 0, -near * 90), "tolerance_m": 0.03, "tolerance_deg": 10}
+    problem.goal = one(goal("pose", pose))
     return problem
 
 

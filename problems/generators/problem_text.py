@@ -1,6 +1,7 @@
 """A problem in space, written as its file: obstacles with the source of their sizes, start and goals."""
 
 import math
+import textwrap
 
 
 def number(value):
@@ -30,24 +31,28 @@ def fields(values):
     return "{" + ", ".join(f"{key}: {written(value)}" for key, value in values.items()) + "}"
 
 
+def comment(text, indent=""):
+    return [f"{indent}# {line}" for line in textwrap.wrap(text, 118 - len(indent))]
+
+
 class Problem:
     """The parts of a problem file, in the order in which they are added."""
 
     def __init__(self, name, about, description, robot, made_by):
-        """@param about lines of the comment at the top   @param robot name of a file of robots/
+        """@param about paragraphs of the comment at the top   @param robot name of a file of robots/
         @param made_by name of the file of generators/
         """
-        self.name, self.about, self.description, self.robot, self.made_by = name, about, description, robot, made_by
+        self.name, self.about, self.description = name, about, description
+        self.robot, self.made_by = robot, made_by
         self.solids = []  # (name, size, center, rpy_deg) of each box, for meshes and octrees of the same
         self.lines = []
         self.bounds = self.start = None
         self.goal = []
-        self.aero = None
         self.files = {}  # of geometry, by path below problems/: bytes
 
-    def source(self, *lines):
+    def source(self, text):
         """A comment over the obstacles that follow: where their sizes come from."""
-        self.lines += [f"    # {line}" for line in lines]
+        self.lines += comment(text, "    ")
 
     def _obstacle(self, name, kind, values):
         self.lines.append(f"    - {{name: {name}, {kind}: {fields(values)}}}")
@@ -85,14 +90,14 @@ class Problem:
         self._obstacle(name, "octomap", {"file": "../" + file})
 
     def text(self):
-        out = [f"# {line}".rstrip() for line in self.about]
-        out += [f"# Made by problems/make_space_problems.py: edit problems/generators/{self.made_by} instead.", "schema: downwash/problem/v1"]
-        out += [f"name: {self.name}", f"description: {self.description}", f"robot: ../robots/{self.robot}.yaml", "environment:"]
+        out = []
+        for paragraph in (*self.about, f"problems/make_space_problems.py makes this file, by generators/{self.made_by}."):
+            out += ["#"] * (out != []) + comment(paragraph)
+        out += ["schema: downwash/problem/v1", f"name: {self.name}", f"description: {self.description}"]
+        out += [f"robot: ../robots/{self.robot}.yaml", "environment:"]
         low, high = self.bounds
         bounds = {f"{axis}_m": (l, h) for axis, l, h in zip("xyz", low, high)}
         out += [f"  bounds: {fields(bounds)}", "  obstacles:", *self.lines]
-        if self.aero:
-            out.append(f"aero: {self.aero}")
         out += ["uncertainty: {}", f"start: {fields(self.start)}", "goal:", *self.goal]
         return "\n".join(out) + "\n"
 
@@ -100,6 +105,18 @@ class Problem:
 def goal(kind, values, hold_s=5):
     """The lines of one goal."""
     return [f"{kind}: {fields(values)}", f"hold_s: {number(hold_s)}"]
+
+
+def tool_at(position, direction, direction_tolerance_deg=15):
+    """The goal of a tool 5 cm around a point."""
+    values = {"position_m": position, "tolerance_m": 0.05, "direction": direction}
+    return goal("end_effector", values | {"direction_tolerance_deg": direction_tolerance_deg})
+
+
+def view_of(target, nearest, farthest, direction, cone_deg):
+    """The goal of a camera."""
+    values = {"target_m": target, "distance_m": (nearest, farthest), "direction": direction}
+    return goal("camera", values | {"view_cone_deg": cone_deg})
 
 
 def one(lines):

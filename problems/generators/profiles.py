@@ -12,8 +12,8 @@ def arc(radius, from_deg, to_deg, steps, center=(0, 0)):
 
 
 def band(inner, outer, place_low, place_high):
-    """The solid between two lines of as many points each, drawn out from one plane to another; both counter-clockwise seen
-    against that way, the inner one to their left."""
+    """The solid between two lines of as many points each, drawn out from one plane to another. Seen against that way
+    both run counter-clockwise, the inner one to the left of the outer one."""
     quads = [[inner[i], outer[i], outer[i + 1], inner[i + 1]] for i in range(len(inner) - 1)]
     return prism(quads, outer + inner[::-1], place_low, place_high)
 

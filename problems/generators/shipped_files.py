@@ -14,6 +14,10 @@ def write_files(files, folder):
         file.write_bytes(content)
 
 
+def read(file):
+    return file.read_bytes() if file.is_file() else None
+
+
 def check_or_write(files, arguments=None):
     """Writes files below problems/ or, with the argument --check, ends with 1 where one of them has other bytes."""
     arguments = sys.argv[1:] if arguments is None else arguments
@@ -22,7 +26,7 @@ def check_or_write(files, arguments=None):
     if not arguments:
         write_files(files, PROBLEMS)
         return
-    wrong = [name for name, content in files.items() if not (PROBLEMS / name).is_file() or (PROBLEMS / name).read_bytes() != content]
+    wrong = [name for name, content in files.items() if read(PROBLEMS / name) != content]
     for name in wrong:
         print(f"problems/{name} is not what {pathlib.Path(sys.argv[0]).name} makes: run it", file=sys.stderr)
     sys.exit(1 if wrong else 0)

@@ -20,23 +20,25 @@ RISER = 0.1143  # DN 100
 def problems():
     about = [
         "A thickness gauge on the shell of a tank, below its wind girder.",
-        "",
-        "The vehicle starts beside the tank, near the ground. It rises to the underside of the wind girder, which is a walkway and",
-        "pulls at its front rotors, and presses a gauge on the shell 0.3 m below it with 5 N, between two brackets.",
+        "The vehicle starts beside the tank, near the ground. It rises to the underside of the wind girder, which is a "
+        "walkway and pulls at its front rotors, and presses a gauge on the shell 0.3 m below it with 5 N, between two "
+        "brackets.",
     ]
-    problem = Problem("tank_shell", about, "Press a gauge on the shell of a tank, below its wind girder.", "hexa960_arm2", "tank_shell.py")
+    description = "Press a gauge on the shell of a tank, below its wind girder."
+    problem = Problem("tank_shell", about, description, "hexa960_arm2", "tank_shell.py")
     problem.between("ground", (-40, -20, -1), (20, 20, 0))
     problem.source("A tank of 30 m, 13.5 m high: six courses of 2.25 m (assumed). The shell meets x = 0.")
     problem.cylinder("shell", RADIUS, HEIGHT, (-RADIUS, 0, HEIGHT / 2))
     problem.source(
-        "Its wind girder as a walkway by API 650, 5.9: at least 710 mm (28 in) clear of the top angle of 75 mm, 1100 mm (42 in) below",
-        "the top; 10 mm thick (assumed). As a sector of 60 degrees.",
+        "Its wind girder as a walkway by API 650, 5.9: at least 710 mm (28 in) clear of the top angle of 75 mm, 1100 mm "
+        "(42 in) below the top; 10 mm thick (assumed). As a sector of 60 degrees."
     )
     high = HEIGHT - GIRDER_DROP
     center = (-RADIUS, 0)
     inner, outer = (arc(RADIUS + width, -SECTOR_DEG, SECTOR_DEG, 24, center) for width in (0, CURB + GIRDER_WIDTH))
     solid = band(inner, outer, along_z(high - GIRDER_PLATE), along_z(high))
-    problem.mesh("wind_girder", "meshes/wind_girder.stl", binary_stl(solid, "wind girder, metres; made by make_space_problems.py"))
+    content = binary_stl(solid, "wind girder, metres; made by make_space_problems.py")
+    problem.mesh("wind_girder", "meshes/wind_girder.stl", content)
     problem.source("Brackets of 0.6 x 0.4 m below it, 3 m apart (assumed).")
     for i in range(-2, 2):
         angle = (i + 0.5) * BRACKETS_APART / RADIUS
@@ -49,6 +51,7 @@ def problems():
     problem.cylinder("riser", RISER / 2, high - GIRDER_PLATE, (riser_x, riser_y, (high - GIRDER_PLATE) / 2))
     problem.bounds = (0.3, -6, 0.5), (8, 6, 16)
     problem.start = {"x_m": 4, "y_m": -4, "z_m": 1.5, "yaw_deg": 180, "joints_deg": (-90, 150)}
-    touch = {"obstacle": "shell", "force_n": 5, "part": "end_effector", "position_m": (0, 0, high - GIRDER_PLATE - 0.3), "tolerance_m": 0.1}
-    problem.goal = one(goal("contact", touch))
+    touch = {"obstacle": "shell", "force_n": 5, "part": "end_effector"}
+    at = {"position_m": (0, 0, high - GIRDER_PLATE - 0.3), "tolerance_m": 0.1}
+    problem.goal = one(goal("contact", touch | at))
     return [problem]

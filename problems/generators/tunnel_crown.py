@@ -3,7 +3,7 @@
 import math
 
 from .geometry_files import along_x, binary_stl
-from .problem_text import Problem, goal, listed
+from .problem_text import Problem, listed, tool_at, view_of
 from .profiles import arc, band
 
 RADIUS, CENTER_Z = 5.5, 1.5
@@ -13,33 +13,34 @@ FAN, FAN_LENGTH = 1.2, 3.0  # outside
 APART = 2.4  # axes of the two fans
 FAN_LOW = 4.7
 WALKWAY = (1.0, 0.15)
-JOINT_X = 0.0
 
 
 def problems():
     about = [
         "The crown of a road tunnel between two jet fans.",
-        "",
-        "The vehicle starts over the road. It rises between the fans and holds its tool, which is on top, to a joint of the lining at",
-        "the crown. Then it looks at the anchors of one fan, where the lining slopes and fan and rods hide them from most places.",
+        "The vehicle starts over the road. It rises between the fans and holds its tool, which is on top, to the crown of "
+        "the lining. Then it looks at an anchor of one fan, which the fan hides from below.",
     ]
-    problem = Problem("tunnel_crown", about, "Reach a tunnel's crown between jet fans, then look at the anchors of one.", "snu_f550_arm2", "tunnel_crown.py")
+    description = "Reach a tunnel's crown between jet fans, then look at an anchor of one."
+    problem = Problem("tunnel_crown", about, description, "snu_f550_arm2", "tunnel_crown.py")
     problem.source(
-        "Two lanes of 3.5 m with walkways of 1 m, 4.5 m of height for traffic (RABT, cross-section 10.5T): a lining with a radius of",
-        "5.5 m about a line 1.5 m over the road, 0.4 m thick (assumed), 20 m of it.",
+        "A road of 7.5 m with walkways of 1 m and 4.5 m of height for traffic (RABT, cross-section 10.5T): a lining with "
+        "a radius of 5.5 m about a line 1.5 m over the road, 0.4 m thick (assumed), 20 m of it."
     )
     problem.between("road", (-HALF_LENGTH, -7, -1), (HALF_LENGTH, 7, 0))
     low_deg = -math.degrees(math.asin(CENTER_Z / RADIUS))
     lines = [arc(RADIUS + more, low_deg, 180 - low_deg, 42, (0, CENTER_Z)) for more in (0, LINING)]
-    content = binary_stl(band(*lines, along_x(-HALF_LENGTH), along_x(HALF_LENGTH)), "tunnel lining, metres; made by make_space_problems.py")
+    solid = band(*lines, along_x(-HALF_LENGTH), along_x(HALF_LENGTH))
+    content = binary_stl(solid, "tunnel lining, metres; made by make_space_problems.py")
     problem.mesh("lining", "meshes/tunnel_lining.stl", content)
     for side, sign in (("right", -1), ("left", 1)):
         inner, outer = 3.75, 3.75 + WALKWAY[0]
         low, high = sorted((sign * inner, sign * outer))
         problem.between(f"{side}_walkway", (-HALF_LENGTH, low, 0), (HALF_LENGTH, high, WALKWAY[1]))
     problem.source(
-        "A pair of jet fans of 1 m with 0.1 m of silencer around and silencers of one diameter at both ends, 1.2 x 3 m outside; two",
-        "diameters between their axes, 0.2 m over the height for traffic (assumed). Four rods of 40 mm each (assumed).",
+        "A pair of jet fans of 1 m with 0.1 m of silencer around and silencers of one diameter at both ends, 1.2 x 3 m "
+        "outside; two diameters between their axes, 0.2 m over the height for traffic; four rods of 40 mm each "
+        "(assumed)."
     )
     fan_z = FAN_LOW + FAN / 2
     for side, sign in (("right", -1), ("left", 1)):
@@ -50,10 +51,9 @@ def problems():
             problem.cylinder(f"{side}_rod_{i}", 0.02, high - low, (x, y, (low + high) / 2))
     problem.bounds = (-6, -4, 0.5), (6, 4, 6.9)
     problem.start = {"x_m": -5, "y_m": -2, "z_m": 1.5, "yaw_deg": 0}
-    crown = {"position_m": (JOINT_X, 0, CENTER_Z + RADIUS - 0.1), "tolerance_m": 0.05, "direction": (0, 0, 1), "direction_tolerance_deg": 15}
     # The nut of the rod that is nearest to the crown, on the side of the crown.
     anchor_y = APART / 2 - 0.4 - 0.025
     anchor = (0.75, anchor_y, CENTER_Z + math.sqrt(RADIUS**2 - anchor_y**2) - 0.05)
-    look = {"target_m": anchor, "distance_m": (0.4, 1), "direction": (0, 1, 1), "view_cone_deg": 45}
-    problem.goal = listed([goal("end_effector", crown), goal("camera", look)])
+    crown = (0, 0, CENTER_Z + RADIUS - 0.1)
+    problem.goal = listed([tool_at(crown, (0, 0, 1)), view_of(anchor, 0.4, 1, (0, 1, 1), 45)])
     return [problem]

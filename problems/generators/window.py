@@ -6,14 +6,15 @@ from .problem_text import Problem, goal, one
 def problems():
     about = [
         "The window of dynobench's scene `window` in space, flown with an arm.",
-        "",
-        "The window is 1.8 m wide and 1.0 m high, in a wall of 0.3 m. With its arm upright the vehicle is 1.35 m high, so the arm has to",
-        "fold on the way; it stands upright again at the goal.",
+        "The window is 1.8 m wide and 1.0 m high, in a wall of 0.3 m. With its arm upright the vehicle is 1.3 m high, so "
+        "the arm has to fold on the way; it stands upright again at the goal.",
     ]
-    problem = Problem("window", about, "Fly through a window too low for an upright arm, upright before and after.", "hexa960_arm2", "window.py")
+    description = "Fly through a window too low for an upright arm, upright before and after."
+    problem = Problem("window", about, description, "hexa960_arm2", "window.py")
     problem.source(
-        "dynobench (Ortiz-Haro et al., https://github.com/quimortiz/dynobench), envs/quadrotor_v0/window: wall, window, start, goal and",
-        "bounds of the centre. Ours: the wall goes on behind the bounds, which holds the whole vehicle.",
+        "dynobench (Ortiz-Haro et al., https://github.com/quimortiz/dynobench), envs/quadrotor_v0/window: wall, window, "
+        "start, goal and bounds of the centre. Ours: the wall goes on behind the bounds, so that no part of the vehicle "
+        "gets around it."
     )
     y = 2.85, 3.15
     problem.between("right_of_window", (3, y[0], -0.5), (7, y[1], 5))
