@@ -21,11 +21,12 @@ def problems():
     about = [
         "A thickness gauge on the shell of a tank, below its wind girder.",
         "The vehicle starts beside the tank, near the ground. It rises to the underside of the wind girder, which is a "
-        "walkway and pulls at its front rotors, and presses a gauge on the shell 0.3 m below it with 5 N, between two "
-        "brackets.",
+        "walkway, and presses a gauge on the shell 0.3 m below it with 5 N, between two brackets. Its arm is one link: a "
+        "joint gives way by force and lever over its gain times the inertia beyond it, so light arms of several links "
+        "buckle under 5 N along them.",
     ]
     description = "Press a gauge on the shell of a tank, below its wind girder."
-    problem = Problem("tank_shell", about, description, "hexa960_arm2", "tank_shell.py")
+    problem = Problem("tank_shell", about, description, "ars_lrm_space", "tank_shell.py")
     problem.between("ground", (-40, -20, -1), (20, 20, 0))
     problem.source("A tank of 30 m, 13.5 m high: six courses of 2.25 m (assumed). The shell meets x = 0.")
     problem.cylinder("shell", RADIUS, HEIGHT, (-RADIUS, 0, HEIGHT / 2))
@@ -50,7 +51,7 @@ def problems():
     riser_x = math.sqrt((RADIUS + 0.3) ** 2 - riser_y**2) - RADIUS
     problem.cylinder("riser", RISER / 2, high - GIRDER_PLATE, (riser_x, riser_y, (high - GIRDER_PLATE) / 2))
     problem.bounds = (0.3, -6, 0.5), (8, 6, 16)
-    problem.start = {"x_m": 4, "y_m": -4, "z_m": 1.5, "yaw_deg": 180, "joints_deg": (-90, 150)}
+    problem.start = {"x_m": 4, "y_m": -4, "z_m": 2, "yaw_deg": 180, "joints_deg": (90,)}
     touch = {"obstacle": "shell", "force_n": 5, "part": "end_effector"}
     at = {"position_m": (0, 0, high - GIRDER_PLATE - 0.3), "tolerance_m": 0.1}
     problem.goal = one(goal("contact", touch | at))
