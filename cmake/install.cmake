@@ -24,7 +24,7 @@ if(DOWNWASH_HELP)
 endif()
 set(DOWNWASH_INSTALL_DATADIR ${CMAKE_INSTALL_DATADIR}/downwash)
 install(DIRECTORY problems/ DESTINATION ${DOWNWASH_INSTALL_DATADIR}/problems
-  FILES_MATCHING PATTERN "*.yaml" PATTERN "*.json" PATTERN "*.stl" PATTERN "*.bt" PATTERN "*.csv")
+  FILES_MATCHING PATTERN generators EXCLUDE PATTERN "*.yaml" PATTERN "*.json" PATTERN "*.stl" PATTERN "*.bt" PATTERN "*.csv")
 install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # Shared libraries hide what the modules are built with (Eigen, OMPL, yaml-cpp), so a program that links them needs none of it.
