@@ -21,8 +21,9 @@ COPY = SOURCES / "build-mutants"
 BUILD = COPY / "build"
 JOBS = os.environ.get("JOBS", "2")
 LONGEST_RUN_S = 600  # a mutant may never come to an end
-MODULES = ("base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners planner results "
-           "fitting exports report bench cli").split()
+# Folders with sources, from the lowest up; that of their tests has the last part of the name.
+MODULES = ("base scene dynamics aeromap/effects aeromap/grids aeromap controllers simulation problems planner/search "
+           "planner/ompl_planners planner results judge aeromap/fitting results/exports apps/report bench apps/cli").split()
 
 
 class Error(Exception):
@@ -175,7 +176,7 @@ class Draw:
     """A change of one line, drawn at random."""
 
     def __init__(self, random_, module):
-        path = random_.choice(sorted([*(COPY / module).rglob("*.cpp"), *(COPY / module).rglob("*.hpp")]))
+        path = random_.choice(sorted([*(COPY / module).glob("*.cpp"), *(COPY / module).glob("*.hpp")]))
         self.files = [str(path.relative_to(COPY))]
         self.lines = path.read_text().split("\n")
         number = random_.randrange(len(self.lines))
@@ -189,14 +190,17 @@ class Draw:
         (COPY / self.files[0]).write_text("\n".join(self.lines))
 
 
-def test_programs(folder):
-    """The names under which a folder of tests/ adds programs."""
-    lists = SOURCES / "tests" / folder / "CMakeLists.txt"
+def test_programs(module):
+    """The names under which the tests of a module add programs."""
+    lists = SOURCES / "tests" / Path(module).name / "CMakeLists.txt"
     return re.findall(r"^\s*downwash_test\((\w+)", lists.read_text(), re.MULTILINE) if lists.exists() else []
 
 
-def run_random(count, seed, modules):
+def run_random(count, seed, names):
     """Tries the programs of the module's own folder first, then those of all folders above it."""
+    modules = [module for module in MODULES if not names or Path(module).name in names]
+    if unknown := set(names) - {Path(module).name for module in modules}:
+        raise Error(f"there is no module {', '.join(sorted(unknown))}")
     random_ = random.Random(seed)
     caught = tried = 0
     while tried < count:
@@ -207,8 +211,8 @@ def run_random(count, seed, modules):
         begin = time.monotonic()
         noticed = []
         try:
-            for folders in [[module], MODULES[MODULES.index(module) + 1:]]:
-                programs = [name for folder in folders for name in test_programs(folder)]
+            for tried_now in [[module], MODULES[MODULES.index(module) + 1:]]:
+                programs = [name for each in tried_now for name in test_programs(each)]
                 if programs and not noticed:
                     tests = "^(" + "|".join(programs) + ")/"
                     noticed = plant_and_test(mutant, ["test_" + name for name in programs], tests)
@@ -231,7 +235,7 @@ def main():
         refresh_copy()
         configure()
         if arguments.random:
-            return run_random(arguments.random, arguments.seed, arguments.names or MODULES) or 0
+            return run_random(arguments.random, arguments.seed, arguments.names) or 0
         return 0 if run_patches(arguments.names) else 1
     except Error as error:
         print(f"mutants: {error}", file=sys.stderr)
