@@ -192,6 +192,23 @@ TEST_CASE(
     CHECK(both.factor(places[0]) == forth.factor(places[0]));
 }
 
+TEST_CASE("What is asked of a volume after it was saved is new again, in bricks that were saved, too") {
+    test::Random random(78);
+    const auto effect = effect_in(random_obstacles(random, 2), 0.25);
+    const Block block{{-1, 1, -0.5, 0.5}, -0.5, 0.5, {}};
+    const VolumeMap map = map_of(effect, block);
+    VolumeMap saved = map.unfilled();
+    for (int part = 0; part < 4; ++part) {
+        for (int i = 0; i < 500; ++i) {
+            static_cast<void>(map.factor(block.any(random)));
+        }
+        REQUIRE(saved.add_bytes(map.take_new_bytes()));
+        CAPTURE(part);
+        CHECK(saved.to_bytes() == map.to_bytes());
+    }
+    CHECK(map.take_new_bytes().empty());
+}
+
 TEST_CASE("At ten thousand random flyable places of three sites a volume is within 0.01, and knows where one may fly") {
     for (const test::VolumeSite& site : {test::girder_bay(), test::pipe_rack(), test::rough_deck(24)}) {
         const VolumeMap map = site.map(site.effect());

@@ -98,6 +98,39 @@ TEST_CASE("A law that knows its plant observes nothing in a lively flight but wh
     CHECK(fine < coarse / 3);
 }
 
+TEST_CASE("An estimate that is held is the same a tick later, whatever pushed in between") {
+    Random random(12);
+    constexpr double gain_1_s = 5;
+    constexpr int numbers = dynamics::space_speeds<2>;
+    for (int trial = 0; trial < 100; ++trial) {
+        const SpaceModel<2> nominal = make_space_model<2>(random_space_plant(random, 2));
+        const auto momentum_in = [&](const dynamics::SpaceState<double, 2>& state, double(&p)[numbers]) {
+            const auto places = dynamics::places_at(nominal, state.q);
+            dynamics::momentum(nominal, places, dynamics::equations_of_motion(nominal, places, state.u), state.u, p);
+        };
+        const auto estimate_in = [&](const dynamics::SpaceState<double, 2>& state, const double(&kept)[numbers]) {
+            const auto places = dynamics::places_at(nominal, state.q);
+            const auto e = dynamics::equations_of_motion(nominal, places, state.u);
+            return controllers::SpaceObservation<double, 2>(gain_1_s, space_tick_s, nominal, state, places, e, kept);
+        };
+        const auto before = random_space_state<2>(random, 3);
+        const auto after = random_space_state<2>(random, 3);
+        double old[numbers], change[numbers], kept[numbers], held[numbers];
+        momentum_in(before, old);
+        momentum_in(after, change);
+        for (int i = 0; i < numbers; ++i) {
+            change[i] -= old[i];
+            kept[i] = random.uniform(-3, 3);
+        }
+        controllers::hold_estimate<2>(gain_1_s, space_tick_s, change, kept, held);
+        const auto first = estimate_in(before, kept);
+        const auto second = estimate_in(after, held);
+        for (int i = 0; i < numbers; ++i) {
+            CHECK(second.force()[i] == Approx(first.force()[i]).margin(1e-9));
+        }
+    }
+}
+
 TEST_CASE("Half a tick on, coordinates are those of constant rates") {
     Random random(9);
     double worst = 0;

@@ -139,6 +139,25 @@ TEST_CASE("Over a wide floor a tilted vehicle feels the images of rotors at thei
     }
 }
 
+TEST_CASE("Beside a step a rotor feels that the vehicle turns about its hub") {
+    const SpaceRobot robot = space_robot(0);
+    const auto scene = std::make_shared<const Scene>(steps());
+    const AeroSettings aero = of_several_rotors(EffectModel::multirotor_images);
+    simulation::DirectSpaceEffect effect(scene, aero, robot);
+    const LaneVector<double> hub_m{0.25, 0, 0.55};
+    double least = 2, most = 0;
+    for (int i = 0; i < 12; ++i) {
+        const LaneRotation<double> attitude = attitude_of(0.5 * i, 0.02 * i, 1);
+        simulation::DirectSpaceEffect fresh(scene, aero, robot);
+        const double expected = fresh.at_turned_rotor(2, hub_m, attitude).all;
+        CHECK(effect.at_turned_rotor(2, hub_m, attitude).all == expected);
+        CHECK(effect.at_turned_rotor(2, hub_m, attitude).all == expected);
+        least = std::min(least, expected);
+        most = std::max(most, expected);
+    }
+    CHECK(most - least > 0.01);
+}
+
 TEST_CASE("A world that turns the scene with the vehicle changes no image, and a fountain carries weight") {
     const SpaceRobot robot = space_robot(0);
     const auto scene = std::make_shared<const Scene>(std::vector<Obstacle>{

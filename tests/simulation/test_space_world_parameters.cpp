@@ -72,6 +72,22 @@ TEST_CASE("Worlds in space are the same for a seed and an index, on any thread, 
     CHECK_FALSE(same_worlds(here[3], draw_space_world(uncertainty, robot, 8, 3)));
 }
 
+TEST_CASE("No world in space of a seed is a world of another seed") {
+    const SpaceRobot robot = space_robot(1);
+    constexpr std::uint64_t seeds = 32, indices = 64;
+    std::set<std::uint64_t> tapes;
+    std::set<double> masses;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        for (std::uint64_t index = 1; index < indices; ++index) {
+            const SpaceWorld world = draw_space_world({}, robot, seed, index);
+            tapes.insert(world.tape);
+            masses.insert(world.mass_scale);
+        }
+    }
+    CHECK(tapes.size() == seeds * (indices - 1));
+    CHECK(masses.size() == seeds * (indices - 1));
+}
+
 TEST_CASE("A joint more does not change what a world draws for everything else") {
     const Uncertainty uncertainty;
     const SpaceWorld two = draw_space_world(uncertainty, space_robot(2), 3, 5);

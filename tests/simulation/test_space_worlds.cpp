@@ -469,3 +469,25 @@ TEST_CASE("Gusts in space have the variance and the spectrum of the Dryden model
         CHECK(power[2][k] == Approx(per_hz * across(1, upward)).epsilon(0.35));
     }
 }
+
+TEST_CASE("Gusts begin with numbers that no tick draws") {
+    constexpr int tapes = 4000;
+    double products[5][simulation::space_noise_count] = {};
+    for (std::uint64_t tape = 0; tape < tapes; ++tape) {
+        double gust[5];
+        simulation::start_gusts(tape, gust);
+        double noise[simulation::drawn_space_noise_count];
+        simulation::draw_space_noise(simulation::normal_levels(), tape, 0, noise, 1);
+        for (int i = 0; i < 5; ++i) {
+            for (int k = 0; k < simulation::space_noise_count; ++k) {
+                products[i][k] += gust[i] * noise[k] / tapes;
+            }
+        }
+    }
+    for (int i = 0; i < 5; ++i) {
+        for (int k = 0; k < simulation::space_noise_count; ++k) {
+            CAPTURE(i, k);
+            CHECK(std::abs(products[i][k]) < 0.08);  // 5 standard deviations
+        }
+    }
+}
