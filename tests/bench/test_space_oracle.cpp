@@ -24,7 +24,7 @@ TEST_CASE("A plan through a culvert is flown in space as in the plane, in drawn 
     const Problem problem = read_problem(problems / "culvert.yaml");  // its plane has a heading of 30 degrees
     const SpaceRobot robot = read_space_robot(problems / "robots/ars_lrm_space.yaml");
     const TwinFlights twins(problem, robot);
-    const Plan plan = nominal_plan(problem, 1, 150);
+    const Plan plan = nominal_plan(problem, 1, 300);
     CHECK(std::abs(plan.last()[plane::x] - plan.first()[plane::x]) > 3);
     for (std::uint64_t index = 0; index < 4; ++index) {
         const World world =
@@ -42,14 +42,14 @@ TEST_CASE("A plan through a culvert is flown in space as in the plane, in drawn 
 TEST_CASE("Flights of robots and worlds that differ come apart") {
     const Problem problem = read_problem(problems / "open_air.yaml");
     SpaceRobot robot = read_space_robot(problems / "robots/ars_lrm_space.yaml");
-    const Plan plan = nominal_plan(problem, 1, 150);
+    const Plan plan = nominal_plan(problem, 1, 300);
     CHECK(TwinFlights(problem, robot).fly(plan, {}, 300).place_m < 1e-9);
     World lopsided;  // a rotor on one side alone: in_plane() would not leave it so
     lopsided.rotor_thrust_scale[0] = 0.01;
     const Apart aside = TwinFlights(problem, robot).fly(plan, lopsided, 300);
     CHECK(aside.beside_m > 1e-4);
     CHECK(aside.place_m >= aside.beside_m);
-    robot.plant.multirotor.mass_kg *= 1.001;
+    robot.plant.multirotor.mass_kg *= 1.01;
     CHECK(TwinFlights(problem, robot).fly(plan, {}, 300).place_m > 1e-6);
 }
 
