@@ -119,7 +119,9 @@ T SpaceInversion::control(const SpaceLawModel<n>& nominal, const dynamics::Space
     const LaneVector<T> demanded = tilt_rate + yaw_rate * axis;
     const T rate_reference[3] = {demanded.x, demanded.y, demanded.z};
 
-    // The torque for the angular acceleration, with the acceleration that this thrust will really give.
+    // The torque for the angular acceleration, with the acceleration that this thrust will really give: more than all
+    // rotors have does not push a centre of mass that is beside the rotors' own.
+    const T given_n = lane::min(thrust_n, T(nominal.max_lift_n));
     T rate_error[3], turn[3];
     for (int i = 0; i < 3; ++i) {
         rate_error[i] = rate_reference[i] - u[3 + i];
@@ -132,7 +134,7 @@ T SpaceInversion::control(const SpaceLawModel<n>& nominal, const dynamics::Space
     }
     const LaneVector<T> turning{turn[0], turn[1], turn[2]};
     const LaneVector<T> acceleration =
-        T(plant.inverse_mass_1_kg) * (thrust_n * axis - cross(turning, e.first_moment_kg_m) - push);
+        T(plant.inverse_mass_1_kg) * (given_n * axis - cross(turning, e.first_moment_kg_m) - push);
     const controllers::SpaceDemand<T> demand{
         thrust_n * axis.z, cross(e.first_moment_kg_m, acceleration) + e.inertia_kg_m2 * turning + spin};
 

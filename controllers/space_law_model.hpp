@@ -15,6 +15,7 @@ struct SpaceLawModel {
     SpaceAllocation allocation;
     double min_thrust_n[max_rotors], max_thrust_n[max_rotors];  ///< of each rotor's command
     double min_lift_n;                                          ///< least thrust along the lift axis, all rotors at min
+    double max_lift_n;                                          ///< greatest one, all rotors at max
     double max_joint_torque_nm[room_for<n>];
 };
 
@@ -34,7 +35,9 @@ template <int n>
     for (int i = 0; i < model.plant.rotor_count; ++i) {
         model.min_thrust_n[i] = min_thrust_n[static_cast<std::size_t>(i)];
         model.max_thrust_n[i] = max_thrust_n[static_cast<std::size_t>(i)];
-        model.min_lift_n += model.min_thrust_n[i] * dot(model.plant.rotor[i].axis, model.allocation.lift_axis);
+        const double along = dot(model.plant.rotor[i].axis, model.allocation.lift_axis);
+        model.min_lift_n += model.min_thrust_n[i] * along;
+        model.max_lift_n += model.max_thrust_n[i] * along;
     }
     for (int i = 0; i < n; ++i) {
         model.max_joint_torque_nm[i] = max_joint_torque_nm[static_cast<std::size_t>(i)];

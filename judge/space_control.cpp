@@ -249,7 +249,8 @@ SpaceCommands SpaceControl::command_by(const SpaceInversion& law, const Tick& ti
         needed.joints_nm -= unknown_joints_nm;
         return needed;
     };
-    const Vector3d lacking_n = thrust_n * (r * axis) - needed_at(Vector3d::Zero(), r * turn).force_n;
+    const double given_n = std::min(thrust_n, shares_.max_lift_n());
+    const Vector3d lacking_n = given_n * (r * axis) - needed_at(Vector3d::Zero(), r * turn).force_n;
     const Vector3d torque_nm = needed_at(lacking_n / mass_kg, r * turn).torque_nm;
     const ExpectedRotors rotors =
         shares_.command({thrust_n * axis.z(), r.transpose() * torque_nm}, ratios(law, tick), tick.thrust_n);

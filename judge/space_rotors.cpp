@@ -55,6 +55,7 @@ RotorShares::RotorShares(const SpaceVehicle& nominal, double tick_s, double roto
     lift_axis_ = force.normalized();
     for (const FlyingRotor& rotor : nominal.rotors) {
         min_lift_n_ += rotor.min_thrust_n * rotor.axis.dot(lift_axis_);
+        max_lift_n_ += rotor.max_thrust_n * rotor.axis.dot(lift_axis_);
     }
 }
 

@@ -31,6 +31,8 @@ class RotorShares {
     [[nodiscard]] const Eigen::Vector3d& lift_axis() const noexcept { return lift_axis_; }
     /// The thrust along that axis when all rotors give their least.
     [[nodiscard]] double min_lift_n() const noexcept { return min_lift_n_; }
+    /// The same when all give their greatest.
+    [[nodiscard]] double max_lift_n() const noexcept { return max_lift_n_; }
     /// The thrusts of a lift without torque.
     [[nodiscard]] DOWNWASH_EXPORT std::vector<double> thrusts_of(double lift_n) const;
 
@@ -47,7 +49,7 @@ class RotorShares {
     double tick_s_, rotor_lead_;
     Shares share_;  ///< of lift and of the three torques
     Eigen::Vector3d lift_axis_;
-    double min_lift_n_ = 0;
+    double min_lift_n_ = 0, max_lift_n_ = 0;
 };
 
 }  // namespace downwash::judge

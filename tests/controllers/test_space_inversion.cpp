@@ -216,6 +216,37 @@ TEST_CASE("From any attitude all of 1,000 vehicles recover") {
     CHECK(recovered<3>(1000) == 1000);
 }
 
+TEST_CASE("A vehicle that asks for more lift than its rotors have stays upright beside an arm that is off its centre") {
+    const SpacePlant plant = hexarotor(2);
+    double mass_kg = plant.multirotor.mass_kg;
+    for (const SpaceLink& link : plant.links) {
+        mass_kg += link.body.mass_kg;
+    }
+    const double most_n = 1.3 * mass_kg * standard_gravity_m_s2 / 6;
+    const SpaceLawModel<2> nominal = law_model_of<2>(plant, 0, most_n);
+    const SpaceInversion law = gains_for(nominal.plant);
+    BasicSpacePoint<double, 2> above{};
+    above.position[space::z] = 300;
+    above.position[space::first_joint] = 90 * degree;
+    auto start = hovering<2>(nominal.plant);
+    start.q[7] = 90 * degree;
+    double most_tilt_cosine = 1;
+    SpaceFlight<SpaceInversion, 2> flight{start, law.rested(nominal, start, space_tick_s), {}, 0};
+    for (int tick = 0; tick < 500; ++tick) {
+        SpaceInversion::Memory<double, 2> next;
+        const double saturation = law.control(nominal, flight.state, flight.memory, above, space_tick_s,
+                                              controllers::NoRatios{}, flight.given, next);
+        flight.max_saturation = std::max(flight.max_saturation, saturation);
+        flight.memory = next;
+        flight.state = dynamics::space_step(nominal.plant, flight.state, flight.given, space_tick_s, FreeSpace{});
+        most_tilt_cosine = std::min(most_tilt_cosine, dynamics::rotation_of(flight.state.q + 3).third.z);
+    }
+    CAPTURE(flight.state.q[2], most_tilt_cosine);
+    CHECK(flight.max_saturation > 50);
+    CHECK(most_tilt_cosine > std::cos(10 * degree));
+    CHECK(flight.state.q[2] > 10);
+}
+
 TEST_CASE("Lanes of a pack are commanded the same bits as plain doubles, saturated or not") {
     CHECK(differing_numbers<0>() == 0);
     CHECK(differing_numbers<2>() == 0);
