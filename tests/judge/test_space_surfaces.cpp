@@ -98,7 +98,7 @@ void check_accelerations(EffectModel ground) {
         by_fountain = std::max(by_fountain, surfaces.fountain(hubs_m));
     }
     CHECK(worst < 1e-9);
-    CHECK(strongest > 0.03);
+    CHECK(strongest > 0.02);
     CHECK(by_walls > 0.5);
     CHECK((by_fountain > 0.03) == (ground == EffectModel::multirotor_body));
 }
