@@ -14,6 +14,10 @@ double attitude_bandwidth(double lag_s, const SpaceBandwidths& bandwidths) {
     return bandwidths.attitude_rad_s.value_or(std::min(0.35 / std::max(lag_s, min_lag_s), max_attitude_rad_s));
 }
 
+double joint_bandwidth(const SpaceBandwidths& bandwidths) {
+    return bandwidths.joint_rad_s.value_or(SpaceBandwidths::least_joint_rad_s);
+}
+
 /// s^2 + 2 damping w s + w^2, and an integral whose share of w^3 leaves the damping nearly as it is.
 SpaceLoopGains loop_gains(double rad_s, double damping, double integral_share, double integral_limit) {
     return {rad_s * rad_s, 2 * damping * rad_s, integral_share * rad_s * rad_s * rad_s, integral_limit};
@@ -27,14 +31,14 @@ SpaceInversion gains_for(double rotor_time_constant_s, const SpaceBandwidths& ba
     SpaceInversion law;
     law.horizontal = loop_gains(bandwidths.translation_rad_s, 0.85, 0.28, 2);
     law.height = loop_gains(bandwidths.height_rad_s, 1, 0.14, 2);
-    law.joint = loop_gains(bandwidths.joint_rad_s, 1, 0.05, 5);
+    law.joint = loop_gains(joint_bandwidth(bandwidths), 1, 0.05, 5);
     law.attitude_kp_1_s = 0.5 * attitude_rad_s;
     law.rate_kp_1_s = 2 * attitude_rad_s;
     law.rate_ki_1_s2 = 0.16 * attitude_rad_s * attitude_rad_s;
     law.yaw_kp_1_s = 0.5 * bandwidths.yaw_rad_s;
     law.yaw_rate_kp_1_s = 2 * bandwidths.yaw_rad_s;
     law.direction_rate_filter_s = 1.75 / attitude_rad_s;
-    law.observer_gain_1_s = bandwidths.observer_gain_1_s;
+    law.observer_gain_1_s = bandwidths.observer_gain_1_s.value_or(SpaceBandwidths::least_observer_1_s);
     return law;
 }
 
@@ -51,7 +55,7 @@ Px4Cascade cascade_gains_for(double rotor_time_constant_s, const SpaceBandwidths
     law.rate = {2 * attitude_rad_s, 0.16 * attitude_rad_s * attitude_rad_s, 0, 10};
     law.yaw_p_1_s = 0.5 * bandwidths.yaw_rad_s;
     law.yaw_rate = {2 * bandwidths.yaw_rad_s, 0.16 * bandwidths.yaw_rad_s * bandwidths.yaw_rad_s, 0, 5};
-    law.joint = loop_gains(3 * bandwidths.joint_rad_s, 1, 0.3, 500);
+    law.joint = loop_gains(3 * joint_bandwidth(bandwidths), 1, 0.3, 500);
     return law;
 }
 

@@ -17,8 +17,9 @@ struct SpaceBandwidths {
     double height_rad_s = 3.5;             ///< z, by thrust alone
     std::optional<double> attitude_rad_s;  ///< tilt; empty: 0.35 / lag of the rotors, at most 12
     double yaw_rad_s = 2.5;
-    double joint_rad_s = 4.7;
-    double observer_gain_1_s = 3;  ///< of the disturbance observer, >= 0; 0: none
+    std::optional<double> joint_rad_s;        ///< empty: least_joint_rad_s
+    std::optional<double> observer_gain_1_s;  ///< of the disturbance observer, >= 0; 0: none; empty: least_observer_1_s
+    static constexpr double least_joint_rad_s = 4.7, least_observer_1_s = 3;
     bool operator==(const SpaceBandwidths&) const = default;
 };
 

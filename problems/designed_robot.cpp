@@ -11,6 +11,7 @@
 #include "downwash/problems/tree_reader.hpp"
 #include "downwash/problems/tree_writer.hpp"
 #include "downwash/simulation/robot_parameters.hpp"
+#include "downwash/simulation/space_design.hpp"
 #include "downwash/simulation/space_robot_parameters.hpp"
 
 namespace downwash {
@@ -66,7 +67,7 @@ std::vector<KeyError> design(SpaceRobot& robot, const SpaceBandwidths& bandwidth
     if (is_cascade) {
         robot.controller.law = cascade_gains_for(robot.plant.time_constant_s, bandwidths);
     } else {
-        robot.controller.law = gains_for(robot.plant.time_constant_s, bandwidths);
+        robot.controller.law = designed_inversion(robot, bandwidths);
     }
     round_gains(space_robot_parameters(), robot);
     return {};

@@ -121,12 +121,14 @@ void add_margins(Command program, Action& action) {
     add_bandwidth("--translation-rad-s W", bandwidths.translation_rad_s, "x and y").shows_default();
     add_bandwidth("--height-rad-s W", bandwidths.height_rad_s, "the height").shows_default();
     add_bandwidth("--attitude-rad-s W", bandwidths.attitude_rad_s,
-                  "the tilt; default: 0.35 / lag of the rotors, at most 12");
+                  "the tilt; default: 0.35 / lag of the rotors and, in space, of the controller, at most 12");
     add_bandwidth("--yaw-rad-s W", bandwidths.yaw_rad_s, "the yaw").shows_default();
-    add_bandwidth("--joints-rad-s W", bandwidths.joint_rad_s, "the joints").shows_default();
-    command.add_option("--observer-1-s L", bandwidths.observer_gain_1_s, "gain of the disturbance observer; 0: none")
-        .in_range(0.0, 1000.0)
-        .shows_default();
+    add_bandwidth("--joints-rad-s W", bandwidths.joint_rad_s,
+                  "the joints; default: 4.7 or, of a model inversion in space, more if the arm's weight asks for it");
+    command
+        .add_option("--observer-1-s L", bandwidths.observer_gain_1_s,
+                    "gain of the disturbance observer; 0: none; default: 3 or, in space, half of the joints' frequency")
+        .in_range(0.0, 1000.0);
     add_json(command, given.as_json);
 }
 

@@ -1,8 +1,11 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <numbers>
 
+#include "../support/random.hpp"
 #include "../support/test_files.hpp"
 #include "downwash/problems/designed_robot.hpp"
+#include "downwash/simulation/space_hover.hpp"
 #include "space_files.hpp"
 
 using namespace downwash;
@@ -83,4 +86,31 @@ TEST_CASE("what else is wrong with a robot stays an error in a design") {
     folder.write("robot.yaml", robot);
     CHECK_THAT(folder.errors_in([&] { return read_robot_for_design(folder / "robot.yaml", {}); }),
                Catch::Contains("multirotor.mass_kg"));
+}
+
+TEST_CASE(
+    "designed gains leave 6 dB and 30 deg to every loop of the shipped robots in space, wherever their arms are") {
+    const std::filesystem::path robots(DOWNWASH_PROBLEMS "/robots");
+    Random random(7);
+    for (const char* name : {"hexa370_arm3", "snu_f550_arm2", "ars_lrm_space"}) {
+        CAPTURE(name);
+        const auto file = robots / (std::string(name) + ".yaml");
+        const auto robot = std::get<SpaceRobot>(read_robot_for_design(file, {}, std::string(SpaceInversion::name)));
+        std::vector<ExaminedPose> poses = examined_poses(robot);
+        for (int i = 0; i < 8; ++i) {
+            std::vector<double> joints_rad;
+            for (const SpaceLinkLimits& link : robot.links) {
+                joints_rad.push_back(random.uniform(link.lower_limit_rad, link.upper_limit_rad));
+            }
+            poses.push_back({"random", joints_rad});
+        }
+        for (const ExaminedPose& pose : poses) {
+            const SpaceLoopMargins margins = space_loop_margins(robot, pose.joints_rad);
+            for (std::size_t loop = 0; loop < margins.loops.size(); ++loop) {
+                CAPTURE(pose.name, pose.joints_rad, space_loop_name(static_cast<int>(loop)));
+                CHECK(margins.loops[loop].gain_margin_db > 6);
+                CHECK(margins.loops[loop].phase_margin_rad > std::numbers::pi / 6);
+            }
+        }
+    }
 }
