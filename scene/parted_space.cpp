@@ -25,7 +25,6 @@ class Fronts {
     Fronts(const std::shared_ptr<const Scene>& scene, const SpaceBounds& bounds, double radius_m)
         : bounds_(bounds),
           side_m_(side_share * radius_m),
-          // In a frame that is nobody's: cubes have their middles at whole numbers.
           ball_(scene, {{{Sphere{middle_share * radius_m}, {}}}, {}}) {}
 
     [[nodiscard]] Cube cube_at(const Vector3& at_m) const {

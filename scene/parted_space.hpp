@@ -27,6 +27,6 @@ struct BallWay {
 [[nodiscard]] DOWNWASH_EXPORT std::optional<BallWay> way_of_ball(const std::shared_ptr<const Scene>& scene,
                                                                  const SpaceBounds& bounds, double radius_m,
                                                                  const Vector3& from_m, std::span<const Vector3> to_m,
-                                                                 std::size_t max_cubes = 200'000);
+                                                                 std::size_t max_cubes = 1'000'000);
 
 }  // namespace downwash

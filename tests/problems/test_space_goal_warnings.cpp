@@ -62,16 +62,15 @@ TEST_CASE("one alternative that can be met is enough") {
 }
 
 TEST_CASE("a goal in space behind a wall is a warning with the wall") {
+    // A ball of 0.2 m fits into the body.
+    const std::string robot = edited(good_space_robot, "size_m: [0.6, 0.6, 0.1]", "size_m: [0.6, 0.6, 0.4]");
     const std::vector<std::string> behind =
-        warnings_of(with_obstacle("{name: wall, box: {size_m: [0.01, 20, 20], center_m: [0, 0, 0]}}"),
-                    std::string(good_space_robot));
+        warnings_of(with_obstacle("{name: wall, box: {size_m: [0.01, 20, 20], center_m: [0, 0, 0]}}"), robot);
     REQUIRE(behind.size() == 1);
-    CHECK_THAT(behind[0], StartsWith("12:3: goal.end_effector is cut off from the start: not even a ball of 0.05 m") &&
+    CHECK_THAT(behind[0], StartsWith("12:3: goal.end_effector is cut off from the start: not even a ball of 0.2 m") &&
                               Contains("'wall'"));
     // A gap of a metre below the top of the bounds.
-    CHECK(warnings_of(with_obstacle("{name: wall, box: {size_m: [0.01, 20, 4], center_m: [0, 0, 2]}}"),
-                      std::string(good_space_robot))
-              .empty());
+    CHECK(warnings_of(with_obstacle("{name: wall, box: {size_m: [0.01, 20, 4], center_m: [0, 0, 2]}}"), robot).empty());
 }
 
 TEST_CASE("a direction that the joints do not allow is an error with the range that they do") {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <memory>
 #include <random>
+#include <span>
 
 #include "downwash/scene/line_of_sight.hpp"
 #include "downwash/scene/parted_space.hpp"
@@ -33,7 +34,7 @@ std::shared_ptr<const Scene> wall_with_door(double width_m) {
 
 std::optional<BallWay> way(const std::shared_ptr<const Scene>& scene, double radius_m, const Vector3& from_m,
                            const Vector3& to_m, std::size_t max_cubes = 200'000) {
-    return way_of_ball(scene, bounds, radius_m, from_m, std::array{to_m}, max_cubes);
+    return way_of_ball(scene, bounds, radius_m, from_m, std::span(&to_m, 1), max_cubes);
 }
 
 }  // namespace
