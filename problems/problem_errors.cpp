@@ -182,25 +182,7 @@ std::vector<KeyError> start_beyond_arm_limits(const Problem& p) {
 }
 
 std::vector<KeyError> start_in_collision(const ProblemCheck& check) {
-    const Problem& p = check.problem();
-    const PlanarPose pose = p.start.pose();
-    const CollisionChecker& checker = check.collisions();
-    if (!checker.is_nearer_than(pose, p.planner.safety_margin_m)) {
-        return {};
-    }
-    const double clearance_m = checker.clearance_m(pose);
-    const std::string remedy = ": move the start or the obstacle";
-    constexpr double accuracy_m = 1e-7;  // of distances, with a reserve
-    const auto nearest = checker.nearest_obstacle(pose, std::max(clearance_m, 0.0) + accuracy_m);
-    const std::string obstacle =
-        nearest ? "the obstacle '" + excerpt(label_of(p.obstacles, *nearest)) + "'" : std::string("an obstacle");
-    if (clearance_m < accuracy_m) {
-        return {{"start", "is in collision with " + obstacle + remedy}};
-    }
-    const bool can_be_told = p.planner.safety_margin_m - clearance_m > accuracy_m;
-    return {{"start", "is " + rounded(clearance_m) + " m from " + obstacle + ", " +
-                          (can_be_told ? "nearer than" : "up to rounding not beyond") + " planner.safety_margin_m, " +
-                          to_text(p.planner.safety_margin_m) + remedy}};
+    return start_near_obstacle(check.problem(), check.collisions(), check.problem().start.pose());
 }
 
 /// World position of a rotor's hub (docs/model.md 1: body axes b1 = (cos p, -sin p), b3 = (sin p, cos p)).

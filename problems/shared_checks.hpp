@@ -2,6 +2,7 @@
 
 // Private to problems/.
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <string_view>
@@ -10,8 +11,10 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/problems/number_text.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/scene/shape_parameters.hpp"
+#include "downwash/scene/shapes.hpp"
 
 // Checks of what problems of every kind have.
 
@@ -56,6 +59,28 @@ std::vector<KeyError> incomplete_effects(const Model& p) {
         }
     }
     return errors;
+}
+
+/// A start in contact with an obstacle, or nearer to one than the planner's margin.
+/// @param checker,pose of the robot at the start, in a plane or in space
+template <class Model, class Checker, class Pose>
+std::vector<KeyError> start_near_obstacle(const Model& p, const Checker& checker, const Pose& pose) {
+    if (!checker.is_nearer_than(pose, p.planner.safety_margin_m)) {
+        return {};
+    }
+    const double clearance_m = checker.clearance_m(pose);
+    const std::string remedy = ": move the start or the obstacle";
+    constexpr double accuracy_m = 1e-7;  // of distances, with a reserve
+    const auto nearest = checker.nearest_obstacle(pose, std::max(clearance_m, 0.0) + accuracy_m);
+    const std::string obstacle =
+        nearest ? "the obstacle '" + excerpt(label_of(p.obstacles, *nearest)) + "'" : std::string("an obstacle");
+    if (clearance_m < accuracy_m) {
+        return {{"start", "is in collision with " + obstacle + remedy}};
+    }
+    const bool can_be_told = p.planner.safety_margin_m - clearance_m > accuracy_m;
+    return {{"start", "is " + problems::rounded(clearance_m) + " m from " + obstacle + ", " +
+                          (can_be_told ? "nearer than" : "up to rounding not beyond") + " planner.safety_margin_m, " +
+                          to_text(p.planner.safety_margin_m) + remedy}};
 }
 
 /// A cost of nothing.

@@ -13,9 +13,11 @@
 #include "downwash/problems/space_goal_parameters.hpp"
 #include "downwash/problems/space_goal_warnings.hpp"
 #include "downwash/problems/space_problem.hpp"
+#include "downwash/problems/space_problem_model.hpp"
 #include "downwash/problems/space_problem_parameters.hpp"
 #include "downwash/scene/collision_checker.hpp"
 #include "downwash/scene/scene.hpp"
+#include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/space_goal_reach.hpp"
 #include "downwash/simulation/space_robot_parameters.hpp"
 #include "downwash/simulation/space_statics.hpp"
@@ -157,6 +159,24 @@ Vector3 in_world(const SpaceStart& start, const Vector3& v) {
     const Vector3 axis{x, y, z};
     const double square = w * w + dot(axis, axis);
     return v + (2 / square) * cross(axis, cross(axis, v) + w * v);
+}
+
+/// A body of a robot, for messages. @param number as in SpaceChecker::Bodies
+std::string body_name(std::size_t number) {
+    return number == 0 ? "the multirotor" : "link " + std::to_string(number);
+}
+
+Errors start_in_collision(const SpaceProblem& p) {
+    const SpaceChecker checker(std::make_shared<const Scene>(p.obstacles), shape_of(p.robot),
+                               p.planner.collision_checker);
+    const SpaceMotion start = start_motion(p.start);
+    const SpacePose pose{start.position_m, start.attitude, start.joints_rad};
+    if (const auto touching = checker.touching_bodies(pose)) {
+        return {{p.start.joints_rad.empty() ? "start" : "start.joints_deg",
+                 "makes " + body_name(touching->second) + " touch " + body_name(touching->first) +
+                     ": expected angles at which the robot does not touch itself"}};
+    }
+    return start_near_obstacle(p, checker, pose);
 }
 
 Errors start_not_flyable(const SpaceProblem& p) {
@@ -319,7 +339,7 @@ Errors touches_that_settle_late(const SpaceProblem& p) {
                                      " s; raise the gains of the position"}};
 }
 
-const std::array<Check<SpaceProblem>, 14> checks{{
+const std::array<Check<SpaceProblem>, 15> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names<SpaceProblem>},
     {{"environment.obstacles"}, shapeless_cylinders<SpaceProblem>},
@@ -328,6 +348,8 @@ const std::array<Check<SpaceProblem>, 14> checks{{
     {{"environment.bounds", "start"}, start_outside_bounds},
     {{"start", "robot.arm"}, misfit_start},
     {{"start", "motion"}, start_too_fast},
+    {{"environment.obstacles", "start", "robot.multirotor.body", "robot.arm", "planner.safety_margin_m"},
+     start_in_collision},
     {{"environment.obstacles", "start", "robot.rotors", "aero"}, start_not_flyable},
     {{"uncertainty", "robot.uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
     {{"planner.objective"}, weightless_objective<SpaceProblem>},

@@ -87,6 +87,11 @@ const Edit problem_edits[] = {
      "9:59: start.joints_deg has 1 number: expected 2, one for each joint of the arm, or no such key"},
     {"joints_deg: [20, -10]", "joints_deg: [20, 95]",
      "9:59: start.joints_deg has 95 for joint 2, beyond its limits: expected -90 to 90"},
+    {"z_m: 2, yaw_deg: 30, joints_deg: [20, -10]", "z_m: 0.56, yaw_deg: 30, joints_deg: [70, -10]",
+     "9:1: start is 0.02444 m from the obstacle 'ground', nearer than planner.safety_margin_m, 0.05: move the start or "
+     "the obstacle"},
+    {"x_m: -4, y_m: 1", "x_m: 4, y_m: 2.6",
+     "9:1: start is in collision with the obstacle 'pole': move the start or the obstacle"},
     {"joints_deg: [20, -10]", "attitude: [0, 0, 0, 0]",
      "9:57: start.attitude has no direction: expected a quaternion [w, x, y, z]; [1, 0, 0, 0] is level"},
     {"joints_deg: [20, -10]", "velocity_m_s: [3, 0, 4]",
@@ -116,12 +121,48 @@ const Edit problem_edits[] = {
     {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
      "pose: {position_m: [3, -2, 2.5]}",
      "11:3: goal.pose.rpy_deg is missing: expected [roll, pitch, yaw] in deg from -360 to 360"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
+     "contact: {obstacle: pole, force_n: 5, part: wrist}",
+     "11:47: goal.contact.part is 'wrist': expected one of frame or end_effector"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
+     "camera: {target_m: [3, 0, 9], distance_m: [1, 2]}",
+     "11:22: goal.camera.target_m is out of reach: from anywhere within the bounds the end effector, which gets 0.55 m "
+     "from the multirotor's centre of mass, misses it by 1.45 m; widen environment.bounds or move the goal"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
+     "camera: {target_m: [3, 0, 2], distance_m: [1, 2], direction: [0, 0, 1], view_cone_deg: 200}",
+     "11:90: goal.camera.view_cone_deg is 200: expected a number in deg above 0 and at most 180"},
+    {"direction: [0, 0, 1]", "direction: [0, 0, 1], direction_tolerance_deg: 0",
+     "11:109: goal.end_effector.direction_tolerance_deg is 0: expected a number in deg above 0 and at most 180"},
     {"max_speed_m_s: 2", "yaw: sideways",
      "13:15: motion.yaw is 'sideways': expected one of free, hold, along or toward"},
     {"max_speed_m_s: 2", "yaw: hold, yaw_toward_m: [0, 0]",
      "13:21: motion.yaw_toward_m has a meaning only with yaw: toward: remove it"},
     {"{name: pole, ", "{name: ground, ",
      "8:14: environment.obstacles[1].name is 'ground' like an obstacle before it: expected a name used once"},
+};
+
+/// What stands where the sound problem has its goal. Errors in lists and choices are those of single goals.
+constexpr std::string_view single_goal =
+    "  end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}\n  hold_s: 5\n";
+
+const Edit goal_edits[] = {
+    {single_goal, "  any_of:\n    - camera: {target_m: [3, 0, 2], distance_m: [2, 1]}\n",
+     "12:49: goal.any_of[0].camera.distance_m is [nearest, farthest]: expected the nearest below the farthest"},
+    {single_goal, "  in_any_order:\n    - contact: {obstacle: post, force_n: 5}\n",
+     "12:27: goal.in_any_order[0].contact.obstacle is 'post', and no obstacle has that name: expected ground or pole"},
+    {single_goal,
+     "  in_any_order:\n    - any_of:\n        - end_effector: {position_m: [3, -2, 2.5], direction: [0, 0, 0]}\n",
+     "13:63: goal.in_any_order[0].any_of[0].end_effector.direction has no direction: expected a vector other than "
+     "[0, 0, 0], or null"},
+    {single_goal, "  - configuration: {y_m: 0}\n  - pose: {position_m: [3, -2, 2.5], rpy_deg: [0, 0, 400]}\n",
+     "12:47: goal[1].pose.rpy_deg is 400: expected [roll, pitch, yaw] in deg from -360 to 360"},
+    {single_goal, "  any_of:\n    - configuration: {y_m: 0}\n      hold_s: 0\n",
+     "13:15: goal.any_of[0].hold_s is 0: expected a number in s from 1 to 3600"},
+    {single_goal, "  any_of: []\n", "11:11: goal.any_of is empty: expected one element at least"},
+    {single_goal, "  in_any_order: []\n", "11:17: goal.in_any_order is empty: expected one element at least"},
+    {single_goal, "  camera: {target_m: [3, 0, 2], distance_m: [1, 2]}\n  contact: {obstacle: pole, force_n: 5}\n",
+     "12:3: goal has both camera and contact: expected exactly one of configuration, end_effector, pose, camera, "
+     "contact, any_of or in_any_order"},
 };
 
 }  // namespace
@@ -134,6 +175,12 @@ TEST_CASE("a malformed robot in space is an error in its own file") {
 
 TEST_CASE("a malformed problem in space is an error at its key") {
     check(problem_edits, "problem.yaml", [](auto from, auto to) {
+        return space_errors(TestFolder(), edited(good_space_problem, from, to), good_space_robot);
+    });
+}
+
+TEST_CASE("a malformed goal in space is an error at its key in a list, a choice or goals in any order") {
+    check(goal_edits, "problem.yaml", [](auto from, auto to) {
         return space_errors(TestFolder(), edited(good_space_problem, from, to), good_space_robot);
     });
 }

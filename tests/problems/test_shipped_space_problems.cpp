@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <numbers>
@@ -103,8 +105,9 @@ struct Asked {
     [[nodiscard]] std::array<double, max_links> any_joints(test::Random& random) const {
         std::array<double, max_links> joints_rad{};
         for (std::size_t i = 0; i < problem.robot.links.size(); ++i) {
+            const SpaceLinkLimits& link = problem.robot.links[i];
             joints_rad[i] =
-                random.uniform(problem.robot.links[i].lower_limit_rad, problem.robot.links[i].upper_limit_rad);
+                link.is_limited ? random.uniform(link.lower_limit_rad, link.upper_limit_rad) : random.uniform(-pi, pi);
         }
         return joints_rad;
     }
@@ -238,4 +241,30 @@ TEST_CASE("Robots of random girder bays and pipe racks start clear of obstacles,
     for (const fs::path& file : files) {
         look_at(file);
     }
+}
+
+TEST_CASE("The gauge is pressed on the tank as hard as the problem asks, from a place at its goal") {
+    const Asked asked(DOWNWASH_PROBLEMS "/space/tank_shell.yaml");
+    const auto pose = place_at(asked.problem.goals.at(0), asked);
+    REQUIRE(pose);
+    SpacePose ahead = *pose;  // outside the wind girder, in front of the place
+    ahead.position_m = pose->position_m - 2.0 * tool_at(asked.problem.robot, *pose).direction;
+    const SpaceMotion start = start_motion(asked.problem.start);
+    SpacePlan plan;
+    plan.tick_s = 1 / asked.problem.robot.controller.rate_hz;
+    plan.joints = asked.problem.robot.joints();
+    for (const SpacePose& at : {SpacePose{start.position_m, start.attitude, start.joints_rad}, ahead, *pose}) {
+        SpaceKnot& knot = plan.reference.emplace_back();
+        knot.tick = static_cast<std::int64_t>(2500 * (plan.reference.size() - 1));
+        std::copy(at.position_m.begin(), at.position_m.end(), knot.point.position);
+        // The start looks at the tank by 180 degrees: the same turn for all.
+        knot.point.position[space::yaw] = std::fmod(yaw_of(at.attitude) + 2 * pi, 2 * pi);
+        std::copy_n(at.joints_rad.begin(), plan.joints, knot.point.position + space::first_joint);
+    }
+    const SpaceFlight flight = SpaceProblemModel(asked.problem).execute(plan);
+    CHECK(flight.outcome == Outcome::ok);
+    REQUIRE(flight.goals.size() == 1);
+    REQUIRE(flight.goals[0].touch);
+    CHECK(flight.goals[0].touch->end == SpaceTouchEnd::met);
+    CHECK(flight.goals[0].is_met);
 }

@@ -83,7 +83,7 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
     const SpaceGoal camera{SpaceCameraGoal{{0, 0, 3}, 0.5, 1.5, Vector3{1, 0, 0}, 0.4, 0.1, false}, 5, {}};
     const SpaceGoal contact{
         SpaceContactGoal{"pole", 4, TouchingPart::frame, Vector3{4, 2, 2}, 0.2, 0.5, 0.2, 0.05}, 6, {}};
-    const SpaceGoal choice{{}, 5, {point, camera}};
+    const SpaceGoal choice{{}, 5, {point, camera, configuration, pose, contact}};
     for (const bool in_any_order : {false, true}) {
         problem.goals = {configuration, point, pose, camera, contact, choice};
         problem.in_any_order = in_any_order;
@@ -100,7 +100,8 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
         CHECK(std::get<SpacePoseGoal>(again.goals[2].kind).rpy_rad == Vector3{0.1, 0.2, 0.3});
         CHECK_FALSE(std::get<SpaceCameraGoal>(again.goals[3].kind).sees);
         CHECK(*std::get<SpaceContactGoal>(again.goals[4].kind).position_m == Vector3{4, 2, 2});
-        REQUIRE(again.goals[5].any_of.size() == 2);
+        REQUIRE(again.goals[5].any_of.size() == 5);
+        CHECK(std::get<SpaceContactGoal>(again.goals[5].any_of[4].kind).force_n == 4);
         CHECK(std::get<SpaceEndEffectorGoal>(again.goals[5].any_of[0].kind).position_m[0] == 1.0 / 7);
         CHECK(again.motion.yaw.target_m[1] == 1.0 / 3);
         CHECK(effective_yaml(again, folder / ".") == effective_yaml(problem, folder / "."));
@@ -109,6 +110,17 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
     const std::string before = problem_sha256(problem);
     problem.robot.links[1].max_torque_nm *= 1.000001;
     CHECK(problem_sha256(problem) != before);
+}
+
+TEST_CASE("a start in space at which the robot touches itself is an error") {
+    SpaceProblem problem = read_space_problem(fs::path(DOWNWASH_PROBLEMS) / "space/girder_bay.yaml");
+    CHECK(space_problem_errors(problem).empty());
+    problem.start.joints_rad = {-90 * degree, -150 * degree};  // link 2 dips into the rotor discs
+    const auto errors = space_problem_errors(problem);
+    REQUIRE(errors.size() == 1);
+    CHECK(errors[0].key == "start.joints_deg");
+    CHECK(errors[0].message ==
+          "makes link 2 touch the multirotor: expected angles at which the robot does not touch itself");
 }
 
 TEST_CASE("a law in space that takes up the force of a touch slowly is an error") {
@@ -168,6 +180,18 @@ TEST_CASE("robots of published numbers have their masses and hover with the thru
     CHECK(hover_n(snu) == Approx(4.0494).epsilon(1e-4));  // 24.296 N on six rotors
     // Both links upright: joint, 0.25 m and 0.30 m.
     CHECK(space_robot_facts(snu).reach_m > 0.05 + 0.25 + 0.3);
+
+    const SpaceRobot large = shipped("hexa960_arm2");
+    CHECK(large.mass_kg() == Approx(4.0 + 6 * 0.015 + 0.25 + 0.148 + 0.16).margin(1e-9));
+    CHECK(hover_n(large) == Approx(7.597).epsilon(1e-4));  // 45.58 N on six rotors
+    // Base, rotors and mount about their common centre of mass, 0.00873 m above the base's.
+    const double up_m = (0.09 * 0.06 + 0.25 * 0.13) / 4.34;
+    const double tilt_kg_m2 = 0.18 + 4 * up_m * up_m + 0.09 * (0.5 * 0.48 * 0.48 + (0.06 - up_m) * (0.06 - up_m)) +
+                              0.25 * (0.13 - up_m) * (0.13 - up_m);
+    CHECK(large.plant.multirotor.inertia_kg_m2[0][0] == Approx(tilt_kg_m2).margin(1e-4));
+    CHECK(large.plant.multirotor.inertia_kg_m2[2][2] == Approx(0.3 + 0.09 * 0.48 * 0.48).margin(1e-4));
+    // The level arm reaches 0.34 m past the rotor discs.
+    CHECK(large.plant.links[1].joint_m[2] + large.plant.end_effector_m[2] - (0.48 + 0.229) == Approx(0.341));
 
     const SpaceRobot neo = shipped("neo11_arm5");
     CHECK(neo.mass_kg() == Approx(3.42 + 6 * 0.005 + 0.667).margin(1e-4));
@@ -230,6 +254,7 @@ TEST_CASE("every shipped robot in space is read as it was written") {
     for (const fs::path& file : {fs::path(DOWNWASH_PROBLEMS) / "robots/hexa370_arm3.yaml",
                                  fs::path(DOWNWASH_PROBLEMS) / "robots/snu_f550_arm2.yaml",
                                  fs::path(DOWNWASH_PROBLEMS) / "robots/neo11_arm5.yaml",
+                                 fs::path(DOWNWASH_PROBLEMS) / "robots/hexa960_arm2.yaml",
                                  fs::path(DOWNWASH_PROBLEMS) / "robots/ars_lrm_space.yaml",
                                  dynobench("quadrotor_v0.yaml"), dynobench("quadrotor_v1.yaml")}) {
         CAPTURE(file);
