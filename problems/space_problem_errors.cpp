@@ -180,7 +180,7 @@ Errors unflyable_uncertainty(const SpaceProblem& p) {
     return p.uncertainty ? uncertainty_errors(*p.uncertainty, uncertain_parts_of(p.robot)) : Errors();
 }
 
-// What the values of a goal leave unclear, kind by kind. The key is that of the kind's group.
+// What the values of a goal leave unclear, kind by kind. The key is that of the kind's group, reach_m arm_reach_m().
 
 Errors directionless(const std::optional<Vector3>& direction, const std::string& key) {
     if (direction && *direction == Vector3{}) {
@@ -189,7 +189,7 @@ Errors directionless(const std::optional<Vector3>& direction, const std::string&
     return {};
 }
 
-Errors unclear(const SpaceConfigurationGoal& goal, const SpaceProblem& p, const std::string& key) {
+Errors unclear(const SpaceConfigurationGoal& goal, const SpaceProblem& p, double /*reach_m*/, const std::string& key) {
     if (!goal.x_m && !goal.y_m && !goal.z_m && !goal.yaw_rad && goal.joints_rad.empty()) {
         return {{key, "is free in every coordinate: expected at least one of x_m, y_m, z_m, yaw_deg or joints_deg"}};
     }
@@ -209,11 +209,8 @@ Errors unclear(const SpaceConfigurationGoal& goal, const SpaceProblem& p, const 
 }
 
 /// A point that the end effector cannot get to from anywhere within the bounds.
-Errors unreachable(const Vector3& at_m, double tolerance_m, const SpaceProblem& p, const std::string& key) {
-    const double reach_m = std::sqrt(worst_pose(p.robot, [&](const std::vector<double>& joints_rad) {
-                                         const Vector3 end_m = arm_pose(p.robot, joints_rad).end_effector_m;
-                                         return dot(end_m, end_m);
-                                     }).value);
+Errors unreachable(const Vector3& at_m, double tolerance_m, const SpaceProblem& p, double reach_m,
+                   const std::string& key) {
     Vector3 beyond_m{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         beyond_m[axis] = std::max({p.bounds.low_m[axis] - at_m[axis], at_m[axis] - p.bounds.high_m[axis], 0.0});
@@ -227,26 +224,26 @@ Errors unreachable(const Vector3& at_m, double tolerance_m, const SpaceProblem& 
                       " m; widen environment.bounds or move the goal"}};
 }
 
-Errors unclear(const SpaceEndEffectorGoal& goal, const SpaceProblem& p, const std::string& key) {
+Errors unclear(const SpaceEndEffectorGoal& goal, const SpaceProblem& p, double reach_m, const std::string& key) {
     Errors errors = directionless(goal.direction, key);
-    append(errors, unreachable(goal.position_m, goal.tolerance_m, p, key + ".position_m"));
+    append(errors, unreachable(goal.position_m, goal.tolerance_m, p, reach_m, key + ".position_m"));
     return errors;
 }
 
-Errors unclear(const SpacePoseGoal& goal, const SpaceProblem& p, const std::string& key) {
-    return unreachable(goal.position_m, goal.tolerance_m, p, key + ".position_m");
+Errors unclear(const SpacePoseGoal& goal, const SpaceProblem& p, double reach_m, const std::string& key) {
+    return unreachable(goal.position_m, goal.tolerance_m, p, reach_m, key + ".position_m");
 }
 
-Errors unclear(const SpaceCameraGoal& goal, const SpaceProblem& p, const std::string& key) {
+Errors unclear(const SpaceCameraGoal& goal, const SpaceProblem& p, double reach_m, const std::string& key) {
     Errors errors = directionless(goal.direction, key);
     if (goal.nearest_m >= goal.farthest_m) {
         errors.push_back({key + ".distance_m", "is [nearest, farthest]: expected the nearest below the farthest"});
     }
-    append(errors, unreachable(goal.target_m, goal.farthest_m, p, key + ".target_m"));
+    append(errors, unreachable(goal.target_m, goal.farthest_m, p, reach_m, key + ".target_m"));
     return errors;
 }
 
-Errors unclear(const SpaceContactGoal& goal, const SpaceProblem& p, const std::string& key) {
+Errors unclear(const SpaceContactGoal& goal, const SpaceProblem& p, double /*reach_m*/, const std::string& key) {
     const bool is_known = std::any_of(p.obstacles.begin(), p.obstacles.end(),
                                       [&](const Obstacle& obstacle) { return obstacle.name == goal.obstacle; });
     if (!goal.obstacle.empty() && is_known) {
@@ -276,8 +273,9 @@ Errors missing_goals(const SpaceProblem& p) {
 
 Errors unclear_goals(const SpaceProblem& p) {
     Errors errors;
+    const double reach_m = arm_reach_m(p.robot);  // takes longer than a goal does
     for_each_goal(p, [&](const SpaceGoal& goal, const std::string& key) {
-        append(errors, std::visit([&](const auto& kind) { return unclear(kind, p, key); }, goal.kind));
+        append(errors, std::visit([&](const auto& kind) { return unclear(kind, p, reach_m, key); }, goal.kind));
     });
     return errors;
 }
