@@ -7,6 +7,7 @@
 
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/angles.hpp"
+#include "downwash/base/direction.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/problems/number_text.hpp"
 #include "downwash/problems/shared_checks.hpp"
@@ -117,7 +118,8 @@ Errors misfit_start(const SpaceProblem& p) {
         for (const double part : *p.start.attitude) {
             square += part * part;
         }
-        if (square == 0) {
+        constexpr double least_square = 1e-12;  // as of has_direction()
+        if (square < least_square) {
             errors.push_back(
                 {"start.attitude", "has no direction: expected a quaternion [w, x, y, z]; [1, 0, 0, 0] is level"});
         }
@@ -183,7 +185,7 @@ Errors unflyable_uncertainty(const SpaceProblem& p) {
 // What the values of a goal leave unclear, kind by kind. The key is that of the kind's group, reach_m arm_reach_m().
 
 Errors directionless(const std::optional<Vector3>& direction, const std::string& key) {
-    if (direction && *direction == Vector3{}) {
+    if (direction && !has_direction(*direction)) {
         return {{key + ".direction", "has no direction: expected a vector other than [0, 0, 0], or null"}};
     }
     return {};
