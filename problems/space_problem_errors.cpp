@@ -7,6 +7,7 @@
 
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/angles.hpp"
+#include "downwash/base/direction.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/problems/number_text.hpp"
 #include "downwash/problems/shared_checks.hpp"
@@ -121,7 +122,8 @@ Errors misfit_start(const SpaceProblem& p) {
         for (const double part : *p.start.attitude) {
             square += part * part;
         }
-        if (square == 0) {
+        constexpr double least_square = 1e-12;  // as of has_direction()
+        if (square < least_square) {
             errors.push_back(
                 {"start.attitude", "has no direction: expected a quaternion [w, x, y, z]; [1, 0, 0, 0] is level"});
         }
@@ -202,16 +204,16 @@ Errors unflyable_uncertainty(const SpaceProblem& p) {
     return p.uncertainty ? uncertainty_errors(*p.uncertainty, uncertain_parts_of(p.robot)) : Errors();
 }
 
-// What the values of a goal leave unclear, kind by kind. The key is that of the kind's group.
+// What the values of a goal leave unclear, kind by kind. The key is that of the kind's group, reach_m arm_reach_m().
 
 Errors directionless(const std::optional<Vector3>& direction, const std::string& key) {
-    if (direction && *direction == Vector3{}) {
+    if (direction && !has_direction(*direction)) {
         return {{key + ".direction", "has no direction: expected a vector other than [0, 0, 0], or null"}};
     }
     return {};
 }
 
-Errors unclear(const SpaceConfigurationGoal& goal, const SpaceProblem& p, const std::string& key) {
+Errors unclear(const SpaceConfigurationGoal& goal, const SpaceProblem& p, double /*reach_m*/, const std::string& key) {
     if (!goal.x_m && !goal.y_m && !goal.z_m && !goal.yaw_rad && goal.joints_rad.empty()) {
         return {{key, "is free in every coordinate: expected at least one of x_m, y_m, z_m, yaw_deg or joints_deg"}};
     }
@@ -231,11 +233,8 @@ Errors unclear(const SpaceConfigurationGoal& goal, const SpaceProblem& p, const 
 }
 
 /// A point that the end effector cannot get to from anywhere within the bounds.
-Errors unreachable(const Vector3& at_m, double tolerance_m, const SpaceProblem& p, const std::string& key) {
-    const double reach_m = std::sqrt(worst_pose(p.robot, [&](const std::vector<double>& joints_rad) {
-                                         const Vector3 end_m = arm_pose(p.robot, joints_rad).end_effector_m;
-                                         return dot(end_m, end_m);
-                                     }).value);
+Errors unreachable(const Vector3& at_m, double tolerance_m, const SpaceProblem& p, double reach_m,
+                   const std::string& key) {
     Vector3 beyond_m{};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         beyond_m[axis] = std::max({p.bounds.low_m[axis] - at_m[axis], at_m[axis] - p.bounds.high_m[axis], 0.0});
@@ -255,22 +254,22 @@ Errors misaimed(const SpaceGoalKind& kind, const SpaceProblem& p, const std::str
     return objection ? Errors{{key + "." + objection->key, objection->reason}} : Errors();
 }
 
-Errors unclear(const SpaceEndEffectorGoal& goal, const SpaceProblem& p, const std::string& key) {
+Errors unclear(const SpaceEndEffectorGoal& goal, const SpaceProblem& p, double reach_m, const std::string& key) {
     Errors errors = directionless(goal.direction, key);
     if (errors.empty()) {
         append(errors, misaimed(goal, p, key));
     }
-    append(errors, unreachable(goal.position_m, goal.tolerance_m, p, key + ".position_m"));
+    append(errors, unreachable(goal.position_m, goal.tolerance_m, p, reach_m, key + ".position_m"));
     return errors;
 }
 
-Errors unclear(const SpacePoseGoal& goal, const SpaceProblem& p, const std::string& key) {
+Errors unclear(const SpacePoseGoal& goal, const SpaceProblem& p, double reach_m, const std::string& key) {
     Errors errors = misaimed(goal, p, key);
-    append(errors, unreachable(goal.position_m, goal.tolerance_m, p, key + ".position_m"));
+    append(errors, unreachable(goal.position_m, goal.tolerance_m, p, reach_m, key + ".position_m"));
     return errors;
 }
 
-Errors unclear(const SpaceCameraGoal& goal, const SpaceProblem& p, const std::string& key) {
+Errors unclear(const SpaceCameraGoal& goal, const SpaceProblem& p, double reach_m, const std::string& key) {
     Errors errors = directionless(goal.direction, key);
     if (errors.empty()) {
         append(errors, misaimed(goal, p, key));
@@ -278,11 +277,11 @@ Errors unclear(const SpaceCameraGoal& goal, const SpaceProblem& p, const std::st
     if (goal.nearest_m >= goal.farthest_m) {
         errors.push_back({key + ".distance_m", "is [nearest, farthest]: expected the nearest below the farthest"});
     }
-    append(errors, unreachable(goal.target_m, goal.farthest_m, p, key + ".target_m"));
+    append(errors, unreachable(goal.target_m, goal.farthest_m, p, reach_m, key + ".target_m"));
     return errors;
 }
 
-Errors unclear(const SpaceContactGoal& goal, const SpaceProblem& p, const std::string& key) {
+Errors unclear(const SpaceContactGoal& goal, const SpaceProblem& p, double /*reach_m*/, const std::string& key) {
     const bool is_known = std::any_of(p.obstacles.begin(), p.obstacles.end(),
                                       [&](const Obstacle& obstacle) { return obstacle.name == goal.obstacle; });
     if (!goal.obstacle.empty() && is_known) {
@@ -312,8 +311,9 @@ Errors missing_goals(const SpaceProblem& p) {
 
 Errors unclear_goals(const SpaceProblem& p) {
     Errors errors;
+    const double reach_m = arm_reach_m(p.robot);  // takes longer than a goal does
     for_each_goal(p, [&](const SpaceGoal& goal, const std::string& key) {
-        append(errors, std::visit([&](const auto& kind) { return unclear(kind, p, key); }, goal.kind));
+        append(errors, std::visit([&](const auto& kind) { return unclear(kind, p, reach_m, key); }, goal.kind));
     });
     return errors;
 }

@@ -39,12 +39,16 @@ class Walk {
         std::string key{};
     };
 
-    /// Moves to where the next value begins; false at the end of the text.
+    /// Moves to where the next value begins; false at the end of the document, behind which a text may go on: the
+    /// parser takes a byte of zero for the end.
     bool next_value() {
         for (; at_ < text_.size(); ++at_) {
             const char c = text_[at_];
             if (c == ']' || c == '}') {
                 levels_.pop_back();
+                if (levels_.empty()) {
+                    return false;
+                }
             } else if (c == ',') {
                 ++levels_.back().index;
                 expects_key_ = !levels_.back().is_list;

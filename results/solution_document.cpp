@@ -1,6 +1,7 @@
 #include "downwash/results/solution_document.hpp"
 
 #include <fstream>
+#include <string_view>
 
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/results/json_place.hpp"
@@ -15,6 +16,7 @@ constexpr int deepest_value = 32;
     throw ProblemFileError({{path, place.line, place.column, message}});
 }
 
+/// Without the byte order mark that some editors put before UTF-8.
 std::string read_text(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     std::string text;
@@ -30,6 +32,10 @@ std::string read_text(const std::string& path) {
                      "is larger than " + std::to_string(max_solution_bytes >> 20U) +
                          " MiB, more than any plan of `solve` takes: expected its solution.json");
         }
+    }
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (text.starts_with(byte_order_mark)) {
+        text.erase(0, byte_order_mark.size());
     }
     return text;
 }

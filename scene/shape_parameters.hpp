@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/parameter_factories.hpp"
 #include "downwash/scene/shapes.hpp"
@@ -48,7 +49,7 @@ std::vector<KeyError> shape_errors(const std::vector<Solid>& solids, const std::
     std::vector<KeyError> errors;
     for (std::size_t i = 0; i < solids.size(); ++i) {
         const auto* cylinder = std::get_if<Cylinder>(&solids[i].shape);
-        if (cylinder && cylinder->axis == Vector3{}) {
+        if (cylinder && !has_direction(cylinder->axis)) {
             errors.push_back({list + "[" + std::to_string(i) + "].cylinder.axis",
                               "has no direction: expected a vector other than [0, 0, 0]"});
         }

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/infinity.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/scene/fcl_distances.hpp"
@@ -30,7 +31,7 @@ void inspect(const SpaceLinkShape& link, const std::string& key, std::vector<Key
     if (!is_finite(link.joint_m)) {
         errors.push_back({key + "joint_m", "must be three finite numbers, in metres"});
     }
-    if (!is_finite(link.axis) || link.axis == Vector3{}) {
+    if (!is_finite(link.axis) || !has_direction(link.axis)) {
         errors.push_back({key + "axis", "has no direction: expected a finite vector other than [0, 0, 0]"});
     }
     if (!(link.lower_limit_rad <= link.upper_limit_rad)) {

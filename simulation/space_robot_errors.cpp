@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/controllers/space_reference.hpp"
 #include "downwash/dynamics/plant_model.hpp"
@@ -114,16 +115,16 @@ Errors lost_directions(const SpaceRobot& robot) {
     constexpr const char* remedy = "has no direction: expected a vector other than [0, 0, 0]";
     Errors errors;
     for (std::size_t k = 0; k < robot.plant.rotors.size(); ++k) {
-        if (robot.plant.rotors[k].axis == Vector3{}) {
+        if (!has_direction(robot.plant.rotors[k].axis)) {
             errors.push_back({"rotors.axes", "of rotor " + std::to_string(k + 1) + " " + remedy});
         }
     }
     for (std::size_t i = 0; i < robot.plant.links.size(); ++i) {
-        if (robot.plant.links[i].axis == Vector3{}) {
+        if (!has_direction(robot.plant.links[i].axis)) {
             errors.push_back({link_key(i, "axis"), remedy});
         }
     }
-    if (robot.tool_direction == Vector3{}) {
+    if (!has_direction(robot.tool_direction)) {
         errors.push_back({"arm.direction", remedy});
     }
     return errors;

@@ -31,10 +31,7 @@ SpaceRobotFacts space_robot_facts(const SpaceRobot& robot) {
             facts.hover_joints_rad = worst.joints_rad;
         }
     }
-    facts.reach_m = std::sqrt(worst_pose(robot, [&](const std::vector<double>& joints_rad) {
-                                  const Vector3 end_m = arm_pose(robot, joints_rad).end_effector_m;
-                                  return dot(end_m, end_m);
-                              }).value);
+    facts.reach_m = arm_reach_m(robot);
     return facts;
 }
 

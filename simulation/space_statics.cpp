@@ -153,6 +153,13 @@ WorstPose worst_pose(const SpaceRobot& robot, const std::function<double(const s
     return worst;
 }
 
+double arm_reach_m(const SpaceRobot& robot) {
+    return std::sqrt(worst_pose(robot, [&](const std::vector<double>& joints_rad) {
+                         const Vector3 end_m = arm_pose(robot, joints_rad).end_effector_m;
+                         return dot(end_m, end_m);
+                     }).value);
+}
+
 std::string joints_text(const std::vector<double>& joints_rad) {
     constexpr double tenths = 10;
     return "[" +

@@ -49,6 +49,10 @@ struct WorstPose {
 [[nodiscard]] DOWNWASH_EXPORT WorstPose worst_pose(const SpaceRobot& robot,
                                                    const std::function<double(const std::vector<double>&)>& value);
 
+/// Farthest that the end effector gets from the multirotor's centre of mass [m], in any pose that is tried.
+/// @pre no axis of a joint is zero
+[[nodiscard]] DOWNWASH_EXPORT double arm_reach_m(const SpaceRobot& robot);
+
 /// "[30, -90]" in degrees, to a tenth.
 [[nodiscard]] DOWNWASH_EXPORT std::string joints_text(const std::vector<double>& joints_rad);
 

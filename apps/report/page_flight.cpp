@@ -41,11 +41,14 @@ Json flight_json(const NumberTable& flight) {
 }
 
 std::string command_of_execution(const Json& solution) {
-    const Json::json_pointer aero("/execution/aero"), world("/execution/world");
+    const Json::json_pointer aero("/execution/aero"), index("/execution/world/index"), seed("/execution/world/seed");
+    const auto is_count = [&](const Json::json_pointer& place) {
+        return solution.contains(place) && solution[place].is_number_unsigned();
+    };
     std::string command = "downwash execute effective.yaml --plan solution.json";
     command += solution.contains(aero) && solution[aero] == false ? " --aero off" : "";
-    if (solution.contains(world) && solution[world].is_object()) {
-        command += " --world " + solution[world].at("index").dump() + " --seed " + solution[world].at("seed").dump();
+    if (is_count(index) && is_count(seed)) {
+        command += " --world " + solution[index].dump() + " --seed " + solution[seed].dump();
     }
     return command + " --out again";
 }

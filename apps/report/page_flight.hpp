@@ -14,7 +14,7 @@ namespace downwash {
 [[nodiscard]] nlohmann::ordered_json flight_json(const NumberTable& flight);
 
 /// The command that flies the plan of a solution again as it was flown; to be given in its folder.
-/// @param solution as in solution.json
+/// @param solution as in solution.json; a world without a number or a seed counts as none
 [[nodiscard]] std::string command_of_execution(const nlohmann::ordered_json& solution);
 
 }  // namespace downwash

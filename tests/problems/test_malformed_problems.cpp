@@ -88,6 +88,8 @@ const Edit edits[] = {
      "8:20: environment.obstacles[1].cylinder.length_m is missing: expected a number in m from 1e-06 to 100000"},
     {"length_m: 5, ", "length_m: 5, axis: [0, 0, 0], ",
      "8:65: environment.obstacles[1].cylinder.axis has no direction: expected a vector other than [0, 0, 0]"},
+    {"length_m: 5, ", "length_m: 5, axis: [0, 0, 1e-170], ",
+     "8:65: environment.obstacles[1].cylinder.axis has no direction: expected a vector other than [0, 0, 0]"},
     {", center_m: [4, 3, 2.5]", "",
      "8:20: environment.obstacles[1].cylinder.center_m is missing: expected [x, y, z] in m from -100000 to 100000"},
     {"cylinder: {", "cilinder: {",

@@ -47,6 +47,10 @@ TEST_CASE("the command of a page repeats an execution in another world or in fre
     };
     CHECK(command_with({{"world", {{"index", 17}, {"seed", 3}}}}) ==
           "downwash execute effective.yaml --plan solution.json --world 17 --seed 3 --out again");
+    // Of a file that somebody changed.
+    for (const json& world : {json::object(), json{{"index", 17}}, json{{"index", "17; date"}, {"seed", 3}}}) {
+        CHECK(command_with({{"world", world}}) == "downwash execute effective.yaml --plan solution.json --out again");
+    }
     CHECK(command_with({{"aero", false}}) ==
           "downwash execute effective.yaml --plan solution.json --aero off --out again");
 }

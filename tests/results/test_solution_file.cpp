@@ -4,6 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "../support/same_bytes.hpp"
 #include "../support/test_files.hpp"
@@ -293,6 +294,24 @@ TEST_CASE("A file that was cut off anywhere is an error") {
         CAPTURE(length);
         CHECK_FALSE(error_of(text.substr(0, length)).empty());
     }
+}
+
+TEST_CASE("Errors of a file with a byte order mark have the places that they have without it") {
+    const std::string mark = "\xEF\xBB\xBF";
+    CHECK(error_of(mark + sample_text()).empty());
+    for (const auto& [from, to] : {std::pair("solution/v1", "solution/v2"), std::pair("\"t_s\": 0.0", "\"t_s\": 0.01"),
+                                   std::pair("\"seed\":", "\"seed\"")}) {
+        const std::string text = sample_with(from, to);
+        CHECK_FALSE(error_of(text).empty());
+        CHECK(error_of(mark + text) == error_of(text));
+    }
+}
+
+TEST_CASE("The place of an error is looked for no farther than to the end of the document") {
+    // The parser reads the escape; the search for the place does not, and comes to the end.
+    const std::string text = sample_with("\"seed\": ", "\"\\u0073eed\": -");
+    CHECK_THAT(error_of(text), Contains("seed: expected a whole number"));
+    CHECK(error_of(text + std::string(1, '\0') + ",]}") == error_of(text));
 }
 
 TEST_CASE("Megabytes of brackets do not overflow the stack") {
