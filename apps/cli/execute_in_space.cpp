@@ -88,7 +88,7 @@ std::string space_summary(const std::string& verdict, const SpaceSolution& solut
 
 ExitCode execute_in_space(const ExecuteArguments& given) {
     if (given.planner.is_any()) {
-        throw UsageError("--margin is a setting of searches, and plans are not searched for in space yet");
+        throw UsageError("--margin is a setting of searches, and a flight in space is not rejected for its margin");
     }
     Interruption interruption;
     std::vector<LocatedError> warnings;
