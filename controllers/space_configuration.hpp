@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "downwash/controllers/space_reference.hpp"
 
@@ -14,6 +15,10 @@ struct SpaceConfiguration {
 
     [[nodiscard]] constexpr double& operator[](std::size_t axis) noexcept { return coordinate[axis]; }
     [[nodiscard]] constexpr double operator[](std::size_t axis) const noexcept { return coordinate[axis]; }
+
+    [[nodiscard]] constexpr auto begin() noexcept { return coordinate.begin(); }
+    [[nodiscard]] constexpr auto begin() const noexcept { return coordinate.begin(); }
+    [[nodiscard]] constexpr auto end() const noexcept { return coordinate.end(); }
 
     friend bool operator==(const SpaceConfiguration&, const SpaceConfiguration&) = default;
 };

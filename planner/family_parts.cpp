@@ -65,7 +65,7 @@ AnySpaceState flown_on(const PlannerModelOf<Space>& model, const SpacePlan& plan
     SpacePoolSetup setup{problem.robot};
     if (model.own_map != nullptr) {
         setup.aero = simulation::space_aero(problem.aero, problem.robot.rotor_radius_m);
-        setup.volumes = {model.own_map->rotor.get(), model.own_map->walls.get()};
+        setup.volumes = model.own_map.get();
     }
     setup.checker = &model.flight->collisions();
     SpaceFlightJob job{vehicle, {}};

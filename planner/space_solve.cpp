@@ -5,7 +5,6 @@
 #include <utility>
 #include <variant>
 
-#include "downwash/effects/effect_models.hpp"
 #include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goals_in_order.hpp"
 #include "downwash/planner/planner_model.hpp"
@@ -86,17 +85,6 @@ std::vector<KeyError> space_planning_errors(const SpaceProblem& problem) {
     }
     if (problem.motion.yaw.mode != YawMode::free) {
         errors.push_back({"motion.yaw", "is a rule that searches do not keep yet: expected free"});
-    }
-    if (needs_volumes(problem) && !problem.aero.map) {
-        const auto refuse = [&](const SurfaceEffect& effect, const char* key) {
-            if (is_multirotor(effect.model)) {
-                errors.push_back({key,
-                                  "is a model of several rotors, through which nothing plans in space yet: expected "
-                                  "one of a single rotor, or variant mp-arm-da without certificates"});
-            }
-        };
-        refuse(problem.aero.ground, "aero.ground.model");
-        refuse(problem.aero.ceiling, "aero.ceiling.model");
     }
     return errors;
 }

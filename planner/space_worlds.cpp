@@ -91,7 +91,7 @@ SpacePool& SpaceProblemWorlds::pool(std::size_t goal, bool among_surfaces) {
         SpacePoolSetup setup{model_.flight->problem().robot};
         if (map != nullptr) {
             setup.aero = simulation::space_aero(problem_.aero, problem_.robot.rotor_radius_m);
-            setup.volumes = {map->rotor.get(), map->walls.get()};
+            setup.volumes = map.get();
         }
         setup.checker = &model_.flight->collisions();
         setup.goal = rules_[goal].get();

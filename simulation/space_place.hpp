@@ -2,9 +2,7 @@
 
 #include <algorithm>
 
-#include "downwash/base/lane_math.hpp"
-#include "downwash/controllers/space_configuration.hpp"
-#include "downwash/scene/space_pose.hpp"
+#include "downwash/simulation/space_configuration.hpp"
 #include "downwash/simulation/space_flight.hpp"
 #include "downwash/simulation/space_flight_job.hpp"
 #include "downwash/simulation/space_tool.hpp"
@@ -13,17 +11,7 @@
 
 namespace downwash {
 
-/// The level vehicle at a configuration.
-[[nodiscard]] inline SpacePose level_at(const SpaceConfiguration& at) noexcept {
-    SpacePose pose;
-    std::copy_n(at.coordinate.begin(), 3, pose.position_m.begin());
-    const lane::SinCos half = lane::sin_cos(0.5 * at[space::yaw]);
-    pose.attitude = {half.cosine, 0, 0, half.sine};
-    std::copy_n(at.coordinate.begin() + space::first_joint, max_joints, pose.joints_rad.begin());
-    return pose;
-}
-
-/// The same at rest.
+/// The level vehicle at rest at a configuration.
 [[nodiscard]] inline SpaceMotion resting_at(const SpaceConfiguration& at) noexcept {
     const SpacePose pose = level_at(at);
     SpaceMotion motion;
@@ -50,9 +38,9 @@ namespace downwash {
 /// The configuration of a vehicle, its tilt left out.
 [[nodiscard]] inline SpaceConfiguration configuration_of(const SpaceMotion& motion) noexcept {
     SpaceConfiguration at;
-    std::ranges::copy(motion.position_m, at.coordinate.begin());
+    std::ranges::copy(motion.position_m, at.begin());
     at[space::yaw] = yaw_of(motion.attitude);
-    std::ranges::copy(motion.joints_rad, at.coordinate.begin() + space::first_joint);
+    std::ranges::copy(motion.joints_rad, at.begin() + space::first_joint);
     return at;
 }
 

@@ -13,7 +13,7 @@ SpacePoolSetup setup_of(const SearchTaskOf<Space>& task, const std::optional<Spa
     SpacePoolSetup setup{robot};
     if (task.map != nullptr) {
         setup.aero = simulation::space_aero(task.problem.aero, robot.rotor_radius_m);
-        setup.volumes = {task.map->rotor.get(), task.map->walls.get()};
+        setup.volumes = task.map;
     }
     setup.checker = &task.model.collisions();
     setup.margin_m = rules ? task.problem.planner.safety_margin_m : 0;

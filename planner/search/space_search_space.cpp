@@ -47,20 +47,6 @@ std::span<const SpaceGoal> alternatives(const SpaceGoal& goal) noexcept {
     return goal.any_of.empty() ? std::span(&goal, 1) : std::span(goal.any_of);
 }
 
-double length_of(const Vector3& v) {
-    return std::sqrt(dot(v, v));
-}
-
-/// Any direction is as likely as any other.
-Vector3 random_direction(Random& random) {
-    for (;;) {
-        const Vector3 v{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-        if (const double length = length_of(v); length > 0.1 && length <= 1) {
-            return (1 / length) * v;
-        }
-    }
-}
-
 }  // namespace
 
 SpacePoint reference_at(const SpaceStart& start) noexcept {
@@ -82,6 +68,8 @@ SpaceSearchSpace::SpaceSearchSpace(const SpaceProblem& problem, const SpaceProbl
     : SearchAxesOf<Space>(search_axes(problem, model.collisions().robot_reach_m())),
       model_(model),
       rule_(problem.robot, model.shared_scene(), {problem.goals.front()}),
+      sampler_(problem.robot, problem.bounds, model.shared_scene(), model.collisions(), problem.planner.safety_margin_m,
+               problem.goals.front()),
       limits_(problem.motion),
       start_(place_of(problem.start)),
       margin_m_(problem.planner.safety_margin_m),
@@ -121,16 +109,7 @@ SpaceConfiguration SpaceSearchSpace::steered(const Configuration& from, const Co
 
 SpaceConfiguration SpaceSearchSpace::sample_in_transport(Random& random) const {
     Configuration c = sample(random);
-    std::copy(start_.coordinate.begin() + space::first_joint, start_.coordinate.end(),
-              c.coordinate.begin() + space::first_joint);
-    return c;
-}
-
-SpaceConfiguration SpaceSearchSpace::with_tool_at(Configuration c, const Vector3& place_m) const {
-    const Vector3 shift = place_m - tool_at(model_.problem().robot, level_at(c)).position_m;
-    for (std::size_t i = 0; i < 3; ++i) {
-        c[i] += shift[i];
-    }
+    std::copy(start_.begin() + space::first_joint, start_.end(), c.begin() + space::first_joint);
     return c;
 }
 
@@ -138,89 +117,31 @@ SpaceGoalError SpaceSearchSpace::error(const SpaceGoal& goal, const Configuratio
     return goal_error(goal, model_.problem().robot, level_at(c), model_.scene());
 }
 
-/// A configuration with the angles of another one whose place uses up to this share of the tolerance of a goal; nothing
-/// where the angles do not meet it.
-std::optional<SpaceConfiguration> SpaceSearchSpace::placed(const SpaceGoal& goal, Configuration c, double share,
-                                                           Random& random) const {
-    if (const auto* tool = std::get_if<SpaceEndEffectorGoal>(&goal.kind)) {
-        c = with_tool_at(c, tool->position_m + (share * tool->tolerance_m) * random_direction(random));
-    } else if (const auto* pose = std::get_if<SpacePoseGoal>(&goal.kind)) {
-        c = with_tool_at(c, pose->position_m + (share * pose->tolerance_m) * random_direction(random));
-    } else if (const auto* camera = std::get_if<SpaceCameraGoal>(&goal.kind)) {
-        const double middle_m = 0.5 * (camera->nearest_m + camera->farthest_m);
-        const double away_m = middle_m + share * (camera->farthest_m - middle_m) * random.uniform(-1, 1);
-        const Vector3 looks = tool_at(model_.problem().robot, level_at(c)).direction;
-        c = with_tool_at(c, camera->target_m - away_m * looks);
-    } else if (const auto* at = std::get_if<SpaceConfigurationGoal>(&goal.kind)) {
-        const Vector3 off = (share * at->tolerance_m) * random_direction(random);
-        const std::optional<double> place_m[] = {at->x_m, at->y_m, at->z_m};
-        for (std::size_t i = 0; i < 3; ++i) {
-            c[i] = place_m[i] ? *place_m[i] + off[i] : c[i];
-        }
-        c[space::yaw] = at->yaw_rad.value_or(c[space::yaw]);
-        std::ranges::copy(at->joints_rad, c.coordinate.begin() + space::first_joint);
-    }
-    const SpaceGoalError error = this->error(goal, c);
-    return error.used_share <= usable_tolerance_share + 1e-6 && !error.is_hidden ? std::optional(c) : std::nullopt;
+std::optional<SpaceConfiguration> SpaceSearchSpace::sample_goal(Random& random) const {
+    // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance.
+    const double share = random.chance(0.5) ? 0 : usable_tolerance_share * random.uniform(0, 1);
+    const SpaceGoalSample drawn = sampler_.sample(random, share);
+    return drawn.place ? std::optional(drawn.place->at) : std::nullopt;
 }
 
-std::optional<SpaceConfiguration> SpaceSearchSpace::sample_goal(Random& random) const {
-    constexpr int tries = 20, tries_of_angles = 200;
-    const std::span<const SpaceGoal> goals = alternatives(goal());
-    for (int i = 0; i < tries; ++i) {
-        const auto drawn = goals.size() == 1 ? 0 : random.uniform(0, static_cast<double>(goals.size()));
-        const SpaceGoal& aim = goals[static_cast<std::size_t>(drawn)];
-        const double share = random.chance(0.5) ? 0 : usable_tolerance_share * random.uniform(0, 1);
-        for (int angles = 0; angles < tries_of_angles; ++angles) {
-            if (const auto candidate = placed(aim, sample(random), share, random)) {
-                if (is_valid(*candidate)) {
-                    return candidate;
-                }
-                break;
-            }
-        }
+std::optional<SpaceConfiguration> SpaceSearchSpace::nearest_at_goal(const Configuration& to, double share,
+                                                                    bool may_have_flaws) const {
+    const auto metric = [this](const Configuration& a, const Configuration& b) { return distance_m(a, b); };
+    const std::optional<SpaceGoalPlace> place = sampler_.nearest(to, metric, share);
+    if (!place || (!may_have_flaws && sampler_.flaw(*place) != SpaceGoalFlaw::none)) {
+        return std::nullopt;
     }
-    return std::nullopt;
+    return place->at;
 }
 
 std::optional<SpaceConfiguration> SpaceSearchSpace::sample_goal_near(const Configuration& configuration,
                                                                      double radius_m, Random& random) const {
-    const std::span<const SpaceGoal> goals = alternatives(goal());
-    const SpaceGoal& nearest = *std::ranges::min_element(goals, [&](const SpaceGoal& a, const SpaceGoal& b) {
-        return is_less(error(a, configuration), error(b, configuration));
-    });
-    const double share = usable_tolerance_share * random.uniform(0, 1);
-    const auto candidate = placed(nearest, sample_near(configuration, radius_m, random), share, random);
-    return candidate && is_valid(*candidate) ? candidate : std::nullopt;
+    const Configuration near = sample_near(configuration, radius_m, random);
+    return nearest_at_goal(near, usable_tolerance_share * random.uniform(0, 1), false);
 }
 
 SpaceConfiguration SpaceSearchSpace::moved_into_goal(Configuration c, double share) const {
-    const std::span<const SpaceGoal> goals = alternatives(goal());
-    const SpaceGoal& nearest = *std::ranges::min_element(
-        goals, [&](const SpaceGoal& a, const SpaceGoal& b) { return is_less(error(a, c), error(b, c)); });
-    Vector3 off{};
-    double tolerance_m = infinity;
-    const auto take = [&](const Vector3& place_m, double its_tolerance_m) {
-        off = tool_at(model_.problem().robot, level_at(c)).position_m - place_m;
-        tolerance_m = its_tolerance_m;
-    };
-    if (const auto* tool = std::get_if<SpaceEndEffectorGoal>(&nearest.kind)) {
-        take(tool->position_m, tool->tolerance_m);
-    } else if (const auto* pose = std::get_if<SpacePoseGoal>(&nearest.kind)) {
-        take(pose->position_m, pose->tolerance_m);
-    } else if (const auto* at = std::get_if<SpaceConfigurationGoal>(&nearest.kind)) {
-        const std::optional<double> place_m[] = {at->x_m, at->y_m, at->z_m};
-        for (std::size_t i = 0; i < 3; ++i) {
-            off[i] = place_m[i] ? c[i] - *place_m[i] : 0;
-        }
-        tolerance_m = at->tolerance_m;
-    }
-    if (const double away_m = length_of(off); away_m > share * tolerance_m) {
-        for (std::size_t i = 0; i < 3; ++i) {
-            c[i] -= (1 - share * tolerance_m / away_m) * off[i];
-        }
-    }
-    return c;
+    return nearest_at_goal(c, share, true).value_or(c);
 }
 
 SpaceGoalError SpaceSearchSpace::error(const Configuration& c) const {
@@ -300,7 +221,7 @@ SpacePose SpaceSearchSpace::pose_along(const SpacePoint& point, bool tilts) cons
     }
     // The shortest turn from the vertical to a + g, after the heading.
     Vector3 force{point.acceleration[0], point.acceleration[1], point.acceleration[2] + standard_gravity_m_s2};
-    const double length = length_of(force);
+    const double length = std::sqrt(dot(force, force));
     if (!(length > 0)) {
         return pose;
     }

@@ -8,6 +8,7 @@
 #include "downwash/search/random.hpp"
 #include "downwash/search/search_space.hpp"
 #include "downwash/simulation/space_goal_rule.hpp"
+#include "downwash/simulation/space_goal_sampler.hpp"
 #include "downwash/simulation/space_place.hpp"
 
 namespace downwash::planning {
@@ -57,7 +58,7 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
     [[nodiscard]] std::optional<Configuration> sample_goal(Random& random) const;
     [[nodiscard]] std::optional<Configuration> sample_goal_near(const Configuration& configuration, double radius_m,
                                                                 Random& random) const;
-    /// Moves the vehicle alone; what it can mend is the place of the end effector, or its own.
+    /// The same configuration where no nearer one is found.
     [[nodiscard]] Configuration moved_into_goal(Configuration configuration, double share) const;
     [[nodiscard]] SpaceGoalError error(const Configuration& configuration) const;
     [[nodiscard]] std::int64_t hold_ticks(const SpacePoint& at) const;
@@ -90,14 +91,13 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
     [[nodiscard]] double extent_m() const noexcept;
 
  private:
-    [[nodiscard]] std::optional<Configuration> placed(const SpaceGoal& goal, Configuration c, double share,
-                                                      Random& random) const;
-    /// The vehicle moved so that its end effector is at a place.
-    [[nodiscard]] Configuration with_tool_at(Configuration c, const Vector3& place_m) const;
+    [[nodiscard]] std::optional<Configuration> nearest_at_goal(const Configuration& to, double share,
+                                                               bool may_have_flaws) const;
     [[nodiscard]] SpaceGoalError error(const SpaceGoal& goal, const Configuration& c) const;
 
     const SpaceProblemModel& model_;
     SpaceGoalRule rule_;
+    SpaceGoalSampler sampler_;
     SpaceMotionLimits limits_;
     Configuration start_;
     double margin_m_;
