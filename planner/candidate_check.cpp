@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "downwash/planner/braking.hpp"
+#include "downwash/planner/family_parts.hpp"
+#include "downwash/planner/space_worlds.hpp"
 #include "downwash/search/obstacle_labels.hpp"
 
 namespace downwash::planning {
@@ -13,29 +15,16 @@ namespace {
 
 constexpr std::string_view failed_certificate = "certificate";
 
-Obstruction obstruction_of(const Certificate& certificate, const Plan& plan) {
-    return {std::string(has_failed(certificate) ? failed_certificate : unfinished_certificate), plan.last(), 0};
-}
-
-/// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
-Obstruction obstruction_of(const Execution& flight, const SearchTask& task) {
-    if (flight.outcome == Outcome::over_budget) {
-        return {std::string(name_of(flight.outcome)), configuration_of(flight.rows.back().q), 0};
-    }
-    const auto nearest =
-        std::min_element(flight.rows.begin(), flight.rows.end(),
-                         [](const FlightRow& a, const FlightRow& b) { return a.clearance_m < b.clearance_m; });
-    const bool is_too_near = flight.outcome == Outcome::ok || flight.outcome == Outcome::collision;
-    const double(&q)[4] = (is_too_near ? *nearest : flight.rows.back()).q;
-    const bool is_by_obstacle = is_too_near || flight.outcome == Outcome::left_flyable_area;
-    return {"direct_flight", configuration_of(q), task.space.goal_distance_m(configuration_of(q)),
-            is_by_obstacle ? obstacles_near(task.model, pose_of(q)) : std::vector<std::string>()};
+template <class Family>
+typename Family::Obstruction obstruction_of(const Certificate& certificate, const typename Family::Plan& plan) {
+    return {std::string(has_failed(certificate) ? failed_certificate : unfinished_certificate), end_of(plan), 0};
 }
 
 }  // namespace
 
-CandidateCheck::CandidateCheck(const Problem& part, const Problem& whole, const PlannerModel& model,
-                               const Course& before, const PlanChecks& checks, const SolveOptions& options)
+template <class Family>
+CandidateCheckOf<Family>::CandidateCheckOf(const Problem& part, const Problem& whole, const PlannerModel& model,
+                                           const Course& before, const PlanChecks& checks, const SolveOptions& options)
     : options_(options),
       before_(before),
       checks_(checks),
@@ -47,14 +36,15 @@ CandidateCheck::CandidateCheck(const Problem& part, const Problem& whole, const 
             plans_flights(part.planner.variant) && checks.worlds != nullptr ? &search_worlds_ : nullptr,
             before.ticks()),
       start_(before.plan.reference.empty() ? before.vehicle : start_state(*model.flight, whole.start)) {
-    if (before.goals.size() != whole.goals_before.size()) {
+    if (before.goals.size() + 1 != goals_of(whole).size()) {
         checks_.stop_finder = nullptr;
     }
-    goals_.push_back(part.goal);
+    goals_.push_back(goal_of(part));
     result_.attempts = before.attempts;
 }
 
-bool CandidateCheck::counts(const Plan& plan, double cost) {
+template <class Family>
+bool CandidateCheckOf<Family>::counts(const Plan& plan, double cost) {
     counterexamples_.clear();
     clock_.found_first(clock_.seconds());
     if (is_too_late()) {
@@ -83,27 +73,30 @@ bool CandidateCheck::counts(const Plan& plan, double cost) {
 }
 
 /// Too late for another certificate and, where a check may end after the search, to begin with another one.
-bool CandidateCheck::is_too_late() {
+template <class Family>
+bool CandidateCheckOf<Family>::is_too_late() {
     const bool has_checked = checks_.time_s > 0 && clock_.record.candidates.checked > 0;
     return (uncertified_ || has_checked) && is_over();
 }
 
 /// Flies a plan to the last goal for its certificate.
-void CandidateCheck::certify(const Plan& flown, const StopCondition& is_over) {
+template <class Family>
+void CandidateCheckOf<Family>::certify(const Plan& flown, const StopCondition& is_over) {
     certificate_ = checks_.worlds->certify(flown, result_.attempts + 1, is_over, world_counter());
     clock_.has_certified();
 }
 
 /// Whether a plan is good when executed with direct aerodynamics. If the plan needs a certificate, another thread
 /// begins with it meanwhile; a plan that is not good has asked for none.
-bool CandidateCheck::flies_well(const Plan& plan, double cost) {
+template <class Family>
+bool CandidateCheckOf<Family>::flies_well(const Plan& plan, double cost) {
     unfinished_.reset();
     const Plan flown = before_.plan.followed_by(plan);
     bool is_finished = false;
     std::atomic<bool> is_bad = false;
     const auto fly = [&] {
         try {
-            flight_ = fly_directly(task_.model, start_, flown, goals_, task_.problem.energy_budget_j,
+            flight_ = fly_directly(task_.model, start_, flown, goals_, energy_budget_of(task_.problem),
                                    [this] { return check_is_over(); });
             is_finished = true;
         } catch (const WorkStopped&) {  // too late
@@ -128,7 +121,7 @@ bool CandidateCheck::flies_well(const Plan& plan, double cost) {
         flight.get();
     }
     if (!is_finished) {
-        discarded_ = Obstruction{std::string(unfinished_flight), plan.last(), 0};
+        discarded_ = Obstruction{std::string(unfinished_flight), end_of(plan), 0};
         unfinished_ = {plan, cost};
     } else if (is_bad) {
         discarded_ = obstruction_of(flight_->execution, task_);
@@ -138,7 +131,8 @@ bool CandidateCheck::flies_well(const Plan& plan, double cost) {
 
 /// Whether a plan can be left for a hover as long as the one that counts. The first one counts in any case, and so does
 /// every one where execution is not checked: stops are flights near surfaces, too.
-bool CandidateCheck::can_stop(const Plan& plan) {
+template <class Family>
+bool CandidateCheckOf<Family>::can_stop(const Plan& plan) {
     stops_.reset();
     if (checks_.stop_finder == nullptr) {
         return true;
@@ -155,7 +149,8 @@ bool CandidateCheck::can_stop(const Plan& plan) {
 
 /// Whether a plan fails rarely enough in worlds that the search has not seen. One that ends before the last goal needs
 /// no certificate; any other has been flown for one.
-bool CandidateCheck::is_certified(const Plan& plan, double cost) {
+template <class Family>
+bool CandidateCheckOf<Family>::is_certified(const Plan& plan, double cost) {
     if (needs_certificate()) {
         ++result_.attempts;
     } else {
@@ -170,7 +165,7 @@ bool CandidateCheck::is_certified(const Plan& plan, double cost) {
     if (!uncertified_ || certificate_->failure_probability.high < uncertified_->certificate.failure_probability.high) {
         uncertified_ = {plan, cost, *certificate_};
     }
-    discarded_ = obstruction_of(*certificate_, plan);
+    discarded_ = obstruction_of<Family>(*certificate_, plan);
     if (task_.worlds != nullptr) {
         counterexamples_ = checks_.worlds->counterexamples(*certificate_, before_);
     }
@@ -178,7 +173,8 @@ bool CandidateCheck::is_certified(const Plan& plan, double cost) {
     return false;
 }
 
-std::vector<Counterexample> CandidateCheck::new_counterexamples() {
+template <class Family>
+auto CandidateCheckOf<Family>::new_counterexamples() -> std::vector<Counterexample> {
     const std::optional<std::size_t> weakest = std::exchange(weakest_, std::nullopt);
     if (weakest && *weakest < before_.goals.size() && !has_plan()) {
         result_.weak_goal = weakest;
@@ -188,13 +184,14 @@ std::vector<Counterexample> CandidateCheck::new_counterexamples() {
 
 /// The plan has counted since that was known. One that is cheaper in the planner's model only, and not when executed,
 /// is no better.
-void CandidateCheck::accept(const Plan& plan, double cost, std::uint64_t iteration) {
+template <class Family>
+void CandidateCheckOf<Family>::accept(const Plan& plan, double cost, std::uint64_t iteration) {
     Found& best = result_.found;
     const CostFunction& objective = task_.problem.planner.objective;
     std::optional<double> executed_cost;
     if (flight_) {
-        executed_cost = cost_of(flight_->execution, objective);
-        if (best.execution && *executed_cost >= cost_of(*best.execution, objective)) {
+        executed_cost = cost_when_executed(flight_->execution, objective);
+        if (best.execution && *executed_cost >= cost_when_executed(*best.execution, objective)) {
             return;
         }
         best.execution = std::move(flight_->execution);
@@ -215,14 +212,15 @@ void CandidateCheck::accept(const Plan& plan, double cost, std::uint64_t iterati
     }
 }
 
-SearchResult CandidateCheck::result(std::uint64_t iterations, const FlightStatistics& statistics,
-                                    std::vector<TreeNode> tree, const Approach& nearest) {
+template <class Family>
+auto CandidateCheckOf<Family>::result(std::uint64_t iterations, const FlightStatistics& statistics,
+                                      std::vector<TreeNode> tree, const Approach& nearest) -> SearchResult {
     SearchRecord& record = clock_.record;
     record.wall_s = clock_.seconds();
     record.iterations = iterations;
     if (task_.flies()) {
         record.edges_simulated = statistics.edges;
-        record.simulated_s = static_cast<double>(statistics.ticks) * task_.model.tick().tick_s;
+        record.simulated_s = static_cast<double>(statistics.ticks) * task_.tick_s;
     }
     record.states_checked = statistics.states_checked;
     record.rejected = statistics.rejected;
@@ -241,7 +239,8 @@ SearchResult CandidateCheck::result(std::uint64_t iterations, const FlightStatis
 
 /// Reports what a search without a plan that counts came to, and what stood before the goal. If it had a plan, that is
 /// what became of its execution.
-void CandidateCheck::report_failure(const FlightStatistics& statistics, const Approach& nearest) {
+template <class Family>
+void CandidateCheckOf<Family>::report_failure(const FlightStatistics& statistics, const Approach& nearest) {
     Found& found = result_.found;
     found.obstruction = discarded_ ? discarded_ : statistics.obstruction;
     found.nearest_approach_m = nearest.nearest_m;
@@ -254,7 +253,8 @@ void CandidateCheck::report_failure(const FlightStatistics& statistics, const Ap
         found.cost = uncertified_->cost;
         found.certificate = uncertified_->certificate;
         if (discarded_->cause == failed_certificate || discarded_->cause == unfinished_certificate) {
-            found.obstruction = obstruction_of(*found.certificate, *found.plan);  // which may be of a plan before
+            found.obstruction =
+                obstruction_of<Family>(*found.certificate, *found.plan);  // which may be of a plan before
         }
     } else if (unfinished_) {
         found.status = Status::approximate;
@@ -262,5 +262,8 @@ void CandidateCheck::report_failure(const FlightStatistics& statistics, const Ap
         found.cost = unfinished_->cost;
     }
 }
+
+template class CandidateCheckOf<Plane>;
+template class CandidateCheckOf<Space>;
 
 }  // namespace downwash::planning

@@ -19,30 +19,59 @@ namespace downwash::planning {
 class StopFinder;
 
 /// What plans have to pass beside the rules of the search itself. Without one they need not.
-struct PlanChecks {
+template <class Family>
+struct PlanChecksOf {
+    using ProblemWorlds = typename Family::ProblemWorlds;
+    using StopFinder = typename Family::StopFinder;
+
     ProblemWorlds* worlds = nullptr;    ///< in which edges are flown and plans certified
     StopFinder* stop_finder = nullptr;  ///< by which a plan must not become clearly worse
     /// Of a search that is one of several: how long after its beginning the check of its first plan may end [s], even
     /// if its own limit is over. A search that is cut off there would have to begin anew.
     double time_s = 0;
 };
+using PlanChecks = PlanChecksOf<Plane>;
 
 /// A plan that comes near the goal only.
-struct Approach {
+template <class Family>
+struct ApproachOf {
+    using Plan = typename Family::Plan;
+
     Status status = Status::none;
     std::optional<Plan> plan;
     double cost = 0;
     std::optional<double> nearest_m;
 };
+using Approach = ApproachOf<Plane>;
 
 /// Decides which plans of one search count, whatever its level of awareness and its algorithm, and keeps the best. A
 /// candidate is a plan that the planner's own model accepts; it is executed with direct aerodynamics, flown for its
 /// certificate and asked for its stops, as far as the problem wants that.
-class CandidateCheck {
+template <class Family>
+class CandidateCheckOf {
  public:
+    using Plan = typename Family::Plan;
+    using FlightState = typename Family::FlightState;
+    using Problem = typename Family::Problem;
+    using Goal = typename Family::Goal;
+    using Obstruction = typename Family::Obstruction;
+    using TreeNode = typename Family::TreeNode;
+    using Counterexample = CounterexampleOf<Family>;
+    using SearchWorlds = SearchWorldsOf<Family>;
+    using SearchTask = SearchTaskOf<Family>;
+    using FlightStatistics = FlightStatisticsOf<Family>;
+    using Found = FoundOf<Family>;
+    using SearchResult = SearchResultOf<Family>;
+    using Course = CourseOf<Family>;
+    using PlannerModel = PlannerModelOf<Family>;
+    using PlanChecks = PlanChecksOf<Family>;
+    using Approach = ApproachOf<Family>;
+    using SolveOptions = SolveOptionsOf<Family>;
+    using DirectFlight = DirectFlightOf<Family>;
+
     /// As for search_goal(). All arguments must outlive it.
-    CandidateCheck(const Problem& part, const Problem& whole, const PlannerModel& model, const Course& before,
-                   const PlanChecks& checks, const SolveOptions& options);
+    CandidateCheckOf(const Problem& part, const Problem& whole, const PlannerModel& model, const Course& before,
+                     const PlanChecks& checks, const SolveOptions& options);
 
     /// What is searched for, from the end of the course on.
     [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
@@ -111,5 +140,6 @@ class CandidateCheck {
     std::optional<Unfinished> unfinished_;
     double known_at_s_ = 0;  ///< when it was known whether the last plan counts
 };
+using CandidateCheck = CandidateCheckOf<Plane>;
 
 }  // namespace downwash::planning

@@ -1,8 +1,8 @@
 #include "downwash/planner/course.hpp"
 
-#include <stdexcept>
 #include <utility>
 
+#include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/search/free_air_cost.hpp"
 #include "downwash/search/line_flights.hpp"
@@ -11,14 +11,16 @@
 
 namespace downwash::planning {
 
-Course Course::from_start(const Problem& problem, const FlightModel& model) {
-    Course course;
+template <class Family>
+auto CourseOf<Family>::from_start(const Problem& problem, const FlightModel& model) -> CourseOf {
+    CourseOf course;
     course.vehicle = start_state(model, problem.start);
     return course;
 }
 
-Course advanced(Course course, const Goal& goal, const Plan& part, double cost, const PlannerModel& model,
-                Variant variant) {
+template <class Family>
+CourseOf<Family> advanced(CourseOf<Family> course, const typename Family::Goal& goal, const typename Family::Plan& part,
+                          double cost, const PlannerModelOf<Family>& model, Variant variant) {
     const std::size_t flown = course.plan.reference.empty() ? 1 : course.plan.reference.size();
     const std::int64_t begun = course.ticks();
     course.plan = with_hover(course.plan.followed_by(part), goal, *model.flight);
@@ -30,14 +32,14 @@ Course advanced(Course course, const Goal& goal, const Plan& part, double cost, 
                                    course.vehicle.plant.energy_j + hover_power_w(*model.flight) * part_s);
         return course;
     }
-    for (std::size_t knot = flown; knot < course.plan.reference.size(); ++knot) {
-        const SegmentFlight flight =
-            fly(*model.flight, model.own_map.get(), rules_of_execution(), course.plan.segment_to(knot), course.vehicle);
-        if (flight.rejection != Rejection::none) {
-            throw std::logic_error("a part of a plan does not fly as it was planned");
-        }
-    }
+    course.vehicle = flown_on(model, course.plan, flown - 1, course.vehicle);
     return course;
 }
+
+template struct CourseOf<Plane>;
+template struct CourseOf<Space>;
+template Course advanced(Course, const Goal&, const Plan&, double, const PlannerModel&, Variant);
+template CourseOf<Space> advanced(CourseOf<Space>, const SpaceGoal&, const SpacePlan&, double,
+                                  const PlannerModelOf<Space>&, Variant);
 
 }  // namespace downwash::planning

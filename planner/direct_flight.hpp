@@ -11,10 +11,14 @@
 namespace downwash::planning {
 
 /// A plan executed with direct aerodynamics.
-struct DirectFlight {
+template <class Family>
+struct DirectFlightOf {
+    using Execution = typename Family::Execution;
+
     Execution execution;
     double wall_s = 0;  ///< how long that took
 };
+using DirectFlight = DirectFlightOf<Plane>;
 
 /// Executes a plan with direct aerodynamics, from the start through all goals.
 /// @param energy_budget_j as for execute()   @throws WorkStopped when it is over before the flight ends

@@ -11,6 +11,7 @@
 #include "downwash/planner/safe_stops.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/visit_order.hpp"
+#include "downwash/search/family.hpp"
 #include "downwash/search/search_record.hpp"
 #include "downwash/simulation/execution.hpp"
 
@@ -22,7 +23,13 @@ inline constexpr std::string_view unfinished_flight = "unfinished_flight";
 inline constexpr std::string_view unfinished_certificate = "unfinished_certificate";
 
 /// What a search has found, or what stood between it and its goal.
-struct Found {
+template <class Family>
+struct FoundOf {
+    using Plan = typename Family::Plan;
+    using Obstruction = typename Family::Obstruction;
+    using TreeNode = typename Family::TreeNode;
+    using Execution = typename Family::Execution;
+
     Status status = Status::none;
     double cost = 0;                  ///< the planner's own figure; 0 without a plan
     std::optional<Plan> plan;         ///< empty with Status::none
@@ -37,6 +44,7 @@ struct Found {
     std::optional<std::size_t> missed_goal;  ///< number of the goal, from 1, that a search for several did not reach
     std::vector<TreeNode> tree;              ///< trees of all searches for the plan, if asked for
 };
+using Found = FoundOf<planning::Plane>;
 
 /// What an executed flight costs.
 [[nodiscard]] DOWNWASH_EXPORT double cost_of(const Execution& execution, const CostFunction& objective);

@@ -1,13 +1,14 @@
 #include "downwash/planner/goal_search.hpp"
 
+#include <cmath>
+#include <type_traits>
+#include <unordered_map>
 #include <utility>
 
 #include "downwash/ompl_planners/control_planners.hpp"
 #include "downwash/ompl_planners/geometric_planners.hpp"
-#include "downwash/search/flight_space.hpp"
-#include "downwash/search/flight_tree_planner.hpp"
-#include "downwash/search/quiet_ompl.hpp"
-#include "downwash/search/tree_record.hpp"
+#include "downwash/search/flight_tree_search.hpp"
+#include "downwash/search/place_sampler.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -61,48 +62,107 @@ SearchResult search_controls(CandidateCheck& check, const SolveOptions& options)
     return result_of(check, std::move(found), planned.statistics());
 }
 
-/// Our own planner, the same for all levels of awareness.
-SearchResult search_tree(CandidateCheck& check, const SolveOptions& options) {
-    const QuietOmpl quiet;
-    const PlannerSettings& settings = check.task().problem.planner;
-    const double tick_s = check.task().model.tick().tick_s;
-    Random random(settings.seed);
-    const OmplTask task(check.task(), random);
-    FlightTreePlanner planner(task.information, check.task(), options.threads);
-    planner.setProblemDefinition(task.definition);
-    planner.set_hooks({[&](const Candidate& candidate) {
-                           return check.counts(plan_through(candidate.moments, tick_s), candidate.cost);
-                       },
-                       [&] { return check.new_counterexamples(); },
-                       [&](const Candidate& candidate) {
-                           check.accept(plan_through(candidate.moments, tick_s), candidate.cost, candidate.iteration);
-                       }});
-    planner.set_max_iterations(settings.max_iterations);
-    planner.set_stops_at_first_plan(options.stop_at_first_solution);
-    planner.set_known(options.known_plan, options.known_places);
-    planner.set_observer([&] {
-        check.clock().note(planner.iterations(), planner.growth().tree().size(), planner.statistics().rejections);
-    });
-    planner.setup();
-    planner.solve(ompl::base::PlannerTerminationCondition([&check] { return check.is_over(); }));
+/// Draws places with the numbers of a search, all over its space and beside others.
+template <class Family>
+class Places final : public PlaceSamplerOf<Family> {
+ public:
+    using Configuration = typename Family::Configuration;
 
-    std::vector<TreeNode> tree;
-    if (options.keep_tree) {
-        tree = tree_of(planner,
-                       [](const ompl::base::State* state) { return configuration_of(point_of(state).reference); });
+    /// @pre both outlive it
+    Places(const typename Family::SearchSpace& space, Random& random) : space_(space), random_(random) {}
+
+    std::optional<Configuration> anywhere(double most) override {
+        if constexpr (std::is_same_v<Family, Space>) {
+            // An arm in its pose of transport seldom is in the way; until there is a plan half of the samples have it.
+            if (!std::isfinite(most) && random_.chance(0.5)) {
+                return space_.sample_in_transport(random_);
+            }
+        }
+        return space_.sample(random_);
     }
-    const FlightNode& nearest = planner.growth().nearest_to_goal();
-    Approach approach;
-    approach.nearest_m = planner.growth().nearest_distance_m();
+    Configuration near(const Configuration& place, double radius_m) override {
+        return space_.sample_near(place, radius_m, random_);
+    }
+
+ private:
+    const typename Family::SearchSpace& space_;
+    Random& random_;
+};
+
+/// The nodes of a tree, parents by their numbers.
+template <class Family>
+std::vector<typename Family::TreeNode> nodes_of(const FlightTreeOf<Family>& tree) {
+    using Node = FlightNodeOf<Family>;
+    std::vector<const Node*> order;
+    std::unordered_map<const Node*, int> number;
+    const auto add = [&](const Node* node) {
+        if (number.emplace(node, static_cast<int>(order.size())).second) {
+            order.push_back(node);
+        }
+    };
+    for (const Node* node : tree.nodes()) {
+        if (node->parent != nullptr) {
+            add(node->parent);  // after a rewiring it may come later in the tree
+        }
+        add(node);
+    }
+    std::vector<typename Family::TreeNode> nodes;
+    for (const Node* node : order) {
+        nodes.push_back({configuration_of(node->reference),
+                         node->parent != nullptr ? number.at(node->parent) : Family::TreeNode::no_parent});
+    }
+    return nodes;
+}
+
+/// Our own planner, the same for all levels of awareness.
+template <class Family>
+SearchResultOf<Family> search_tree(CandidateCheckOf<Family>& check, const SolveOptionsOf<Family>& options) {
+    using Candidate = CandidateOf<Family>;
+    const SearchTaskOf<Family>& task = check.task();
+    const PlannerSettings& settings = task.problem.planner;
+    Random random(settings.seed);
+    Places<Family> places(task.space, random);
+    FlightTreeSearchOf<Family> search(task, options.threads);
+    search.set_hooks({[&](const Candidate& candidate) {
+                          return check.counts(plan_through(candidate.moments, task.blank_plan), candidate.cost);
+                      },
+                      [&] { return check.new_counterexamples(); },
+                      [&](const Candidate& candidate) {
+                          check.accept(plan_through(candidate.moments, task.blank_plan), candidate.cost,
+                                       candidate.iteration);
+                      }});
+    search.set_max_iterations(settings.max_iterations);
+    search.set_stops_at_first_plan(options.stop_at_first_solution);
+    search.set_known(options.known_plan, options.known_places);
+    search.set_observer([&] {
+        check.clock().note(search.iterations(), search.growth().tree().size(), search.statistics().rejections);
+    });
+    search.begin(start_point(task), random, places);
+    search.go_on([&check] { return check.is_over(); });
+
+    std::vector<typename Family::TreeNode> tree;
+    if (options.keep_tree) {
+        tree = nodes_of(search.growth().tree());
+    }
+    const FlightNodeOf<Family>& nearest = search.growth().nearest_to_goal();
+    ApproachOf<Family> approach;
+    approach.nearest_m = search.growth().nearest_distance_m();
     if (nearest.parent != nullptr) {
         approach.status = Status::approximate;
-        approach.plan = planner.growth().tree().plan_to(nearest);
+        approach.plan = search.growth().tree().plan_to(nearest);
         approach.cost = nearest.cost;
     }
-    return check.result(planner.iterations(), planner.statistics(), std::move(tree), approach);
+    return check.result(search.iterations(), search.statistics(), std::move(tree), approach);
 }
 
 }  // namespace
+
+SearchResultOf<Space> search_goal(const SpaceProblem& part, const SpaceProblem& whole,
+                                  const PlannerModelOf<Space>& model, const CourseOf<Space>& before,
+                                  const PlanChecksOf<Space>& checks, const SolveOptionsOf<Space>& options) {
+    CandidateCheckOf<Space> check(part, whole, model, before, checks, options);
+    return search_tree(check, options);
+}
 
 SearchResult search_goal(const Problem& part, const Problem& whole, const PlannerModel& model, const Course& before,
                          const PlanChecks& checks, const SolveOptions& options) {

@@ -5,22 +5,13 @@
 #include <numeric>
 #include <utility>
 
+#include "downwash/planner/family_parts.hpp"
 #include "downwash/problems/problem_model.hpp"
 
 namespace downwash::planning {
 namespace {
 
-/// The search for the way to a goal from the end of a course.
-Problem part_of(const Problem& problem, const Goal& goal, const Course& before) {
-    Problem part = problem;
-    part.goals_before.clear();
-    part.goal = goal;
-    if (!before.plan.reference.empty()) {
-        part.start = Start::resting_at(before.plan.last());
-    }
-    return part;
-}
-
+template <class TreeNode>
 void add_trees(std::vector<TreeNode>& sum, const std::vector<TreeNode>& part) {
     const int begin = static_cast<int>(sum.size());
     for (const TreeNode& node : part) {
@@ -30,8 +21,9 @@ void add_trees(std::vector<TreeNode>& sum, const std::vector<TreeNode>& part) {
 
 }  // namespace
 
-GoalSequence::GoalSequence(const Problem& problem, const PlannerModel& model, const SolveOptions& options,
-                           const SequenceEffort& effort, std::uint64_t attempts)
+template <class Family>
+GoalSequenceOf<Family>::GoalSequenceOf(const Problem& problem, const PlannerModel& model, const SolveOptions& options,
+                                       const SequenceEffort& effort, std::uint64_t attempts)
     : problem_(problem),
       model_(model),
       options_(options),
@@ -46,18 +38,20 @@ GoalSequence::GoalSequence(const Problem& problem, const PlannerModel& model, co
       round_(new_round(whole_)),
       attempts_(attempts) {}
 
-GoalSequence::Round GoalSequence::new_round(const SearchBudget& budget) const {
+template <class Family>
+auto GoalSequenceOf<Family>::new_round(const SearchBudget& budget) const -> Round {
     return {budget, {Course::from_start(problem_, *model_.flight)}, {}, {}};
 }
 
-std::optional<GoalSequence::Part> GoalSequence::next() {
+template <class Family>
+auto GoalSequenceOf<Family>::next() -> std::optional<Part> {
     if (is_done_) {
         return std::nullopt;
     }
     const std::size_t number = round_.part_costs.size();
     Course& course = round_.courses.back();
     course.attempts = attempts_;
-    Part part{part_of(problem_, goals_[number], course), &course, options_of_part(), 0};
+    Part part{part_of(problem_, goals_[number], course.plan), &course, options_of_part(), 0};
     part.problem.planner.seed += searches_[number]++;
     part_budget_ = has_way() ? round_.left.part(share(number)) : budget_of(number).at_most(round_.left);
     part_budget_.limit(part.problem.planner);
@@ -67,13 +61,15 @@ std::optional<GoalSequence::Part> GoalSequence::next() {
     return part;
 }
 
-void GoalSequence::add(SearchResult part) {
+template <class Family>
+void GoalSequenceOf<Family>::add(SearchResult part) {
     if (!goes_on_after(std::move(part)) || round_.part_costs.size() == goals_.size()) {
         end_round();
     }
 }
 
-SearchResult GoalSequence::result() && {
+template <class Family>
+auto GoalSequenceOf<Family>::result() && -> SearchResult {
     if (has_way() && best_.certificate) {
         best_.certificate->attempts = attempts_;
     }
@@ -82,7 +78,8 @@ SearchResult GoalSequence::result() && {
 
 /// Begins the next round, if there is time. After the first whole way, a round may take twice as much as all that
 /// before it or, later, as the round before; the last one takes the rest.
-void GoalSequence::end_round() {
+template <class Family>
+void GoalSequenceOf<Family>::end_round() {
     constexpr std::uint64_t min_iterations = 50;
     constexpr double min_s = 0.1;
     if (number_ == 1) {
@@ -109,7 +106,8 @@ void GoalSequence::end_round() {
 
 /// A part was not found in time. Until there is a whole way, it is searched anew, every second time from another end of
 /// the part before: the goal may be out of reach from the first one.
-bool GoalSequence::give_up() {
+template <class Family>
+bool GoalSequenceOf<Family>::give_up() {
     if (has_way()) {
         return false;
     }
@@ -124,7 +122,8 @@ bool GoalSequence::give_up() {
 
 /// Before there is a whole way: what a search for a part may take. Luck differs between searches, so that several short
 /// ones find more than one long one; each that is given up allows the next one twice as much.
-SearchBudget GoalSequence::budget_of(std::size_t part) const {
+template <class Family>
+auto GoalSequenceOf<Family>::budget_of(std::size_t part) const -> SearchBudget {
     constexpr double longest_first_s = 2.5;
     // Where energy is limited it is not the first plan of a part that counts, but a cheap one.
     const double first_share = (is_thrifty() ? 0.6 : 0.25) / static_cast<double>(goals_.size());
@@ -133,7 +132,8 @@ SearchBudget GoalSequence::budget_of(std::size_t part) const {
 }
 
 /// Goes back to search the way to some goal anew. False if there is no time for it.
-bool GoalSequence::go_back(std::size_t part) {
+template <class Family>
+bool GoalSequenceOf<Family>::go_back(std::size_t part) {
     keep_if_farther();
     round_.courses.resize(part + 1);
     round_.part_costs.resize(part);
@@ -145,7 +145,8 @@ bool GoalSequence::go_back(std::size_t part) {
 
 /// Takes the way to the next goal or, if none was found in time, goes back to an earlier one. @return whether the round
 /// goes on
-bool GoalSequence::goes_on_after(SearchResult part) {
+template <class Family>
+bool GoalSequenceOf<Family>::goes_on_after(SearchResult part) {
     const std::size_t number = round_.part_costs.size();
     const bool is_last = number + 1 == goals_.size();
     const Course& course = round_.courses.back();
@@ -206,7 +207,8 @@ bool GoalSequence::goes_on_after(SearchResult part) {
 }
 
 /// Options under which a part reports its progress as that of the whole.
-SolveOptions GoalSequence::options_of_part() {
+template <class Family>
+auto GoalSequenceOf<Family>::options_of_part() -> SolveOptions {
     SolveOptions inner = options_;
     inner.known_plan.reset();
     inner.known_places.clear();
@@ -252,7 +254,8 @@ SolveOptions GoalSequence::options_of_part() {
 }
 
 /// The share of what is left of a round for a part: half of a round is shared equally, half by where it paid.
-double GoalSequence::share(std::size_t part) const {
+template <class Family>
+double GoalSequenceOf<Family>::share(std::size_t part) const {
     const double all_gains = std::accumulate(gains_.begin(), gains_.end(), 0.0);
     const auto weight = [&](std::size_t i) {
         const double equal = 1 / static_cast<double>(goals_.size());
@@ -267,7 +270,8 @@ double GoalSequence::share(std::size_t part) const {
 
 /// Whether a way is better than the best so far: it can be left for a hover for clearly more of its time or, else,
 /// costs less.
-bool GoalSequence::is_better(const Found& way) const {
+template <class Family>
+bool GoalSequenceOf<Family>::is_better(const Found& way) const {
     if (way.safe_stops && best_.safe_stops) {
         if (is_clearly_worse(*way.safe_stops, *best_.safe_stops) ||
             is_clearly_worse(*best_.safe_stops, *way.safe_stops)) {
@@ -279,8 +283,9 @@ bool GoalSequence::is_better(const Found& way) const {
 
 /// What the search for the last part found, as ways through all goals.
 /// @param begun_at_s,iterations_before of the whole when it began
-void GoalSequence::note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,
-                                     std::uint64_t iterations_before) {
+template <class Family>
+void GoalSequenceOf<Family>::note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,
+                                               std::uint64_t iterations_before) {
     note_first_plans(record_, last, begun_at_s);
     for (const Improvement& found : last.improvements) {
         const double cost = before.cost + found.cost;
@@ -292,7 +297,8 @@ void GoalSequence::note_improvements(const Course& before, const SearchRecord& l
 }
 
 /// Until there is a whole way: keeps one that goes through more goals, or as many.
-void GoalSequence::keep_if_farther() {
+template <class Family>
+void GoalSequenceOf<Family>::keep_if_farther() {
     const bool is_farther = round_.part_costs.size() > part_costs_.size() ||
                             (round_.part_costs.size() == part_costs_.size() &&
                              (!best_.plan || (round_.way.certificate && !best_.certificate)));
@@ -302,7 +308,8 @@ void GoalSequence::keep_if_farther() {
 }
 
 /// Keeps a way as the best one.
-void GoalSequence::keep(Round round) {
+template <class Family>
+void GoalSequenceOf<Family>::keep(Round round) {
     gains_.resize(goals_.size());
     for (std::size_t i = 0; has_way() && i < goals_.size(); ++i) {
         gains_[i] = std::max(0.0, part_costs_[i] - round.part_costs[i]);
@@ -313,5 +320,8 @@ void GoalSequence::keep(Round round) {
         best_.missed_goal.reset();
     }
 }
+
+template class GoalSequenceOf<Plane>;
+template class GoalSequenceOf<Space>;
 
 }  // namespace downwash::planning

@@ -7,6 +7,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/planner/course.hpp"
+#include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/search_budget.hpp"
 #include "downwash/planner/search_result.hpp"
 #include "downwash/planner/solve_options.hpp"
@@ -36,13 +37,23 @@ struct SequenceEffort {
 ///     while (const auto next = sequence.next()) {
 ///         sequence.add(search_goal(next->problem, ...));
 ///     }
-class DOWNWASH_EXPORT GoalSequence {
+template <class Family>
+class DOWNWASH_EXPORT GoalSequenceOf {
  public:
+    using Problem = typename Family::Problem;
+    using Goal = typename Family::Goal;
+    using Found = FoundOf<Family>;
+    using SearchResult = SearchResultOf<Family>;
+    using Course = CourseOf<Family>;
+    using PlannerModel = PlannerModelOf<Family>;
+    using SolveOptions = SolveOptionsOf<Family>;
+    using FoundPlan = FoundPlanOf<Family>;
+
     /// @param attempts plans that asked for a certificate before   @pre problem, model and options outlive it
-    GoalSequence(const Problem& problem, const PlannerModel& model, const SolveOptions& options,
-                 const SequenceEffort& effort, std::uint64_t attempts);
-    GoalSequence(const GoalSequence&) = delete;
-    GoalSequence& operator=(const GoalSequence&) = delete;
+    GoalSequenceOf(const Problem& problem, const PlannerModel& model, const SolveOptions& options,
+                   const SequenceEffort& effort, std::uint64_t attempts);
+    GoalSequenceOf(const GoalSequenceOf&) = delete;
+    GoalSequenceOf& operator=(const GoalSequenceOf&) = delete;
 
     /// A search for the way to the next goal.
     struct Part {
@@ -73,12 +84,14 @@ class DOWNWASH_EXPORT GoalSequence {
     [[nodiscard]] bool goes_on_after(SearchResult part);
     [[nodiscard]] bool go_back(std::size_t part);
     [[nodiscard]] bool give_up();
-    [[nodiscard]] bool is_thrifty() const { return problem_.energy_budget_j && !effort_.has_energy_to_spare; }
+    [[nodiscard]] bool is_thrifty() const { return energy_budget_of(problem_) && !effort_.has_energy_to_spare; }
     void end_round();
     [[nodiscard]] SearchBudget budget_of(std::size_t part) const;
     [[nodiscard]] SolveOptions options_of_part();
     [[nodiscard]] double share(std::size_t part) const;
-    [[nodiscard]] double cost_when_flown(const Found& way) const { return cost_of(way, problem_.planner.objective); }
+    [[nodiscard]] double cost_when_flown(const Found& way) const {
+        return way.execution ? cost_when_executed(*way.execution, problem_.planner.objective) : way.cost;
+    }
     [[nodiscard]] bool is_better(const Found& way) const;
     void note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,
                            std::uint64_t iterations_before);
@@ -112,5 +125,6 @@ class DOWNWASH_EXPORT GoalSequence {
     std::vector<double> gains_;        ///< by how much each part became cheaper when the best way last did
     double told_cost_ = std::numeric_limits<double>::infinity();  ///< cost of the best way that the caller knows
 };
+using GoalSequence = GoalSequenceOf<Plane>;
 
 }  // namespace downwash::planning

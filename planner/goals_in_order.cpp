@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "downwash/planner/braking.hpp"
+#include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goal_search.hpp"
 #include "downwash/planner/goal_sequence.hpp"
+#include "downwash/planner/space_worlds.hpp"
 #include "downwash/planner/stopwatch.hpp"
 #include "downwash/planner/worlds.hpp"
 
@@ -13,10 +15,12 @@ namespace downwash::planning {
 namespace {
 
 /// The search for the way through several goals.
-SearchResult search_in_turn(const Problem& problem, const PlannerModel& model, PlanChecks checks,
-                            const SolveOptions& options, const SequenceEffort& effort, std::uint64_t attempts) {
-    GoalSequence sequence(problem, model, options, effort, attempts);
-    while (const std::optional<GoalSequence::Part> part = sequence.next()) {
+template <class Family>
+SearchResultOf<Family> search_in_turn(const typename Family::Problem& problem, const PlannerModelOf<Family>& model,
+                                      PlanChecksOf<Family> checks, const SolveOptionsOf<Family>& options,
+                                      const SequenceEffort& effort, std::uint64_t attempts) {
+    GoalSequenceOf<Family> sequence(problem, model, options, effort, attempts);
+    while (const auto part = sequence.next()) {
         checks.time_s = part->check_time_s;
         sequence.add(search_goal(part->problem, problem, model, *part->before, checks, part->options));
     }
@@ -24,12 +28,14 @@ SearchResult search_in_turn(const Problem& problem, const PlannerModel& model, P
 }
 
 /// The search for the way to one goal.
-SearchResult search_alone(const Problem& problem, const PlannerModel& model, const PlanChecks& checks,
-                          const SolveOptions& options, std::uint64_t attempts) {
-    Course start = Course::from_start(problem, *model.flight);
+template <class Family>
+SearchResultOf<Family> search_alone(const typename Family::Problem& problem, const PlannerModelOf<Family>& model,
+                                    const PlanChecksOf<Family>& checks, const SolveOptionsOf<Family>& options,
+                                    std::uint64_t attempts) {
+    CourseOf<Family> start = CourseOf<Family>::from_start(problem, *model.flight);
     start.attempts = attempts;
-    SearchResult result = search_goal(problem, problem, model, start, checks, options);
-    Found& found = result.found;
+    SearchResultOf<Family> result = search_goal(problem, problem, model, start, checks, options);
+    FoundOf<Family>& found = result.found;
     if (checks.stop_finder != nullptr && found.status == Status::solved && !found.safe_stops) {  // the time was up
         try {
             found.safe_stops = checks.stop_finder->along(*found.plan, end_of_last_flight(options.stop));
@@ -55,6 +61,18 @@ SearchResult search_in_order(const Problem& problem, const PlannerModel& model, 
     const PlanChecks checks{worlds ? &*worlds : nullptr, stop_finder ? &*stop_finder : nullptr};
     return problem.goals_before.empty() ? search_alone(problem, model, checks, options, attempts)
                                         : search_in_turn(problem, model, checks, options, effort, attempts);
+}
+
+SearchResultOf<Space> search_in_order(const SpaceProblem& problem, const PlannerModelOf<Space>& model,
+                                      const SolveOptionsOf<Space>& options, const SequenceEffort& effort,
+                                      std::uint64_t attempts) {
+    std::optional<SpaceProblemWorlds> worlds;
+    if (problem.uncertainty) {
+        worlds.emplace(problem, model, options.threads);
+    }
+    const PlanChecksOf<Space> checks{worlds ? &*worlds : nullptr, nullptr};
+    return problem.goals.size() == 1 ? search_alone(problem, model, checks, options, attempts)
+                                     : search_in_turn(problem, model, checks, options, effort, attempts);
 }
 
 StopCondition end_of_last_flight(const std::stop_token& stop) {

@@ -18,8 +18,12 @@ namespace downwash::planning {
 class SearchClock {
  public:
     /// @param check_time_s how long after the beginning a check of a plan may end, if that is more than the limit [s]
-    SearchClock(const PlannerSettings& settings, const SolveOptions& options, double check_time_s = 0)
-        : options_(options), confidence_(settings.confidence) {
+    template <class Family>
+    SearchClock(const PlannerSettings& settings, const SolveOptionsOf<Family>& options, double check_time_s = 0)
+        : stop_(options.stop),
+          on_progress_(options.on_progress),
+          stops_at_first_(options.stop_at_first_solution),
+          confidence_(settings.confidence) {
         if (settings.time_limit_s || !settings.max_iterations) {
             limit_s_ = settings.time_limit_s.value_or(default_time_limit_s);
             check_limit_s_ = std::max(*limit_s_, check_time_s);
@@ -71,15 +75,15 @@ class SearchClock {
         if (std::this_thread::get_id() == thread_) {
             report();
         }
-        return options_.stop.stop_requested() || (limit_s && clock_.seconds() >= *limit_s) ||
-               (options_.stop_at_first_solution && !record.improvements.empty());
+        return stop_.stop_requested() || (limit_s && clock_.seconds() >= *limit_s) ||
+               (stops_at_first_ && !record.improvements.empty());
     }
 
     /// Tells the caller how the search goes, ten times a second.
     void report() {
         constexpr double period_s = 0.1;
         const double now_s = clock_.seconds();
-        if (!options_.on_progress || now_s < progress_.wall_s + period_s) {
+        if (!on_progress_ || now_s < progress_.wall_s + period_s) {
             return;
         }
         progress_.wall_s = now_s;
@@ -88,10 +92,12 @@ class SearchClock {
         progress_.worlds = is_certifying_ ? std::optional(certified_in_.load()) : std::nullopt;
         progress_.failures = failed_in_;
         progress_.failure_bound = failure_interval(failed_in_, certified_in_, confidence_).high;
-        options_.on_progress(progress_);
+        on_progress_(progress_);
     }
 
-    const SolveOptions& options_;
+    std::stop_token stop_;
+    std::function<void(const Progress&)> on_progress_;
+    bool stops_at_first_;
     double confidence_;
     Stopwatch clock_;
     std::optional<double> limit_s_, check_limit_s_;

@@ -10,7 +10,10 @@
 namespace downwash::planning {
 
 /// What a search, or all searches for the goals of a problem, came to.
-struct SearchResult {
+template <class Family>
+struct SearchResultOf {
+    using Found = FoundOf<Family>;
+
     Found found;
     SearchRecord record;         ///< how it went
     std::uint64_t attempts = 0;  ///< plans that asked for a certificate, those before the search included
@@ -21,5 +24,6 @@ struct SearchResult {
     /// limits. Of a search for several goals.
     std::optional<std::size_t> hard_goal = {};
 };
+using SearchResult = SearchResultOf<Plane>;
 
 }  // namespace downwash::planning

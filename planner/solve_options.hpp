@@ -11,6 +11,7 @@
 
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/controllers/plan.hpp"
+#include "downwash/search/family.hpp"
 
 namespace downwash {
 
@@ -34,14 +35,23 @@ struct Progress {
 };
 
 /// A plan that a search has just found, better than all before.
-struct FoundPlan {
+template <class Family>
+struct FoundPlanOf {
+    using Plan = typename Family::Plan;
+
     const Plan& plan;                  ///< through all goals; valid during the call
     double cost = 0;                   ///< by the planner's own model
     std::optional<double> flown_cost;  ///< cost of its flight with direct aerodynamics, if that was checked
 };
+using FoundPlan = FoundPlanOf<planning::Plane>;
 
 /// How a program takes part in a search. Its functions must not throw.
-struct SolveOptions {
+template <class Family>
+struct SolveOptionsOf {
+    using Configuration = typename Family::Configuration;
+    using Plan = typename Family::Plan;
+    using FoundPlan = FoundPlanOf<Family>;
+
     int threads = 1;       ///< threads for flights, below 1 as 1; the result does not depend on it
     std::stop_token stop;  ///< ends the search early, with the best plan so far
     std::function<void(const Progress&)> on_progress;  ///< called by solve()'s thread, ten times a second
@@ -58,10 +68,11 @@ struct SolveOptions {
     bool finds_stops = false;
     bool keep_tree = false;  ///< also gives the search tree
     /// Reuses a map of the same problem, else std::invalid_argument. The search fills what it needs of it.
-    std::shared_ptr<const AeroMap> map;
+    std::shared_ptr<const typename Family::Effects> map;
     /// Without a map of the caller's: folder from which a map's blocks are read, and in which those that the search
     /// filled are kept; empty: nowhere.
     std::filesystem::path map_cache;
 };
+using SolveOptions = SolveOptionsOf<planning::Plane>;
 
 }  // namespace downwash

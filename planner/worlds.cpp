@@ -10,6 +10,7 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/planner/certificate_record.hpp"
+#include "downwash/planner/search_quantiles.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/noise.hpp"
 #include "downwash/simulation/world_parameters.hpp"
@@ -17,44 +18,16 @@
 namespace downwash::planning {
 namespace {
 
-/// Spreads points evenly: Kronecker's sequence with the generalised golden ratio (Roberts 2018).
-/// @param point one of the sequence, filled   @param number which one
-void spread_evenly(std::span<double> point, std::uint64_t number) {
-    double phi = 2;
-    for (int i = 0; i < 30; ++i) {
-        double power = 1;
-        for (std::size_t k = 0; k < point.size(); ++k) {
-            power *= phi;
-        }
-        phi = phi - (power * phi - phi - 1) / (static_cast<double>(point.size() + 1) * power - 1);
-    }
-    double step = 1;
-    for (double& coordinate : point) {
-        step /= phi;
-        const double place = 0.5 + static_cast<double>(number) * step;
-        coordinate = place - std::floor(place);
-    }
-}
-
-/// Worlds in which dangers come early (DangerQuantiles); then points spread evenly.
-/// @param number of the world, from 1   @return quantiles of world_parameters_of(robot)
-std::vector<double> search_quantiles(const Robot& robot, std::uint64_t number) {
-    constexpr double DangerQuantiles::*dangers[] = {&DangerQuantiles::strong, &DangerQuantiles::weak,
-                                                    &DangerQuantiles::forward, &DangerQuantiles::backward};
+/// Worlds of a search. @param number of the world, from 1   @return quantiles of world_parameters_of(robot)
+std::vector<double> quantiles_of_world(const Robot& robot, std::uint64_t number) {
     const std::vector<const WorldParameter*> parameters = world_parameters_of(robot);
-    std::vector<double> quantiles(parameters.size());
-    if (number <= std::size(dangers)) {
-        std::ranges::transform(parameters, quantiles.begin(),
-                               [&](const WorldParameter* parameter) { return parameter->danger.*dangers[number - 1]; });
-        return quantiles;
+    std::vector<DangerQuantiles> dangers;
+    for (const WorldParameter* parameter : parameters) {
+        dangers.push_back(parameter->danger);
     }
-    // A sequence for what moves in the plane, and one for what displaces beside it: neither depends on the other.
+    // A sequence for what moves in the plane, and one for what displaces beside it.
     const auto first_lateral = std::ranges::find_if(parameters, &WorldParameter::is_lateral);
-    const std::span<double> all = quantiles;
-    const auto in_plane = static_cast<std::size_t>(first_lateral - parameters.begin());
-    spread_evenly(all.first(in_plane), number);
-    spread_evenly(all.subspan(in_plane), number);
-    return quantiles;
+    return search_quantiles(dangers, static_cast<std::size_t>(first_lateral - parameters.begin()), number);
 }
 
 /// Enough to tell which flights came nearest.
@@ -64,10 +37,6 @@ bool is_same(const std::vector<ReferenceKnot>& a, const std::vector<ReferenceKno
     return std::ranges::equal(
         a, b, [](const ReferenceKnot& x, const ReferenceKnot& y) { return x.tick == y.tick && x.point == y.point; });
 }
-
-constexpr std::uint64_t worlds_per_attempt = 1'000'000;
-/// The worlds of screenings are none of any certificate.
-constexpr std::uint64_t first_screening = std::uint64_t{1} << 32U;
 
 }  // namespace
 
@@ -87,7 +56,7 @@ std::vector<FlownWorld> search_worlds(const Problem& problem) {
     for (std::uint64_t i = 1; i < problem.planner.worlds; ++i) {
         const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem.planner.seed} ^ simulation::mixed(i));
         worlds.push_back(make_world(
-            problem.robot, world_at(*problem.uncertainty, problem.robot, search_quantiles(problem.robot, i), tape)));
+            problem.robot, world_at(*problem.uncertainty, problem.robot, quantiles_of_world(problem.robot, i), tape)));
     }
     return worlds;
 }

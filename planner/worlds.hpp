@@ -25,6 +25,11 @@ struct ScreenedFleet {
     std::vector<std::optional<FlightState>> vehicles;
 };
 
+/// Certificates of later attempts are flown in worlds of their own.
+inline constexpr std::uint64_t worlds_per_attempt = 1'000'000;
+/// The worlds of screenings are none of any certificate.
+inline constexpr std::uint64_t first_screening = std::uint64_t{1} << 32U;
+
 /// Told now and then in how many worlds a plan was flown, and in how many it failed.
 using WorldCounter = std::function<void(std::uint64_t worlds, std::uint64_t failures)>;
 

@@ -54,7 +54,7 @@ SpaceFlight SpaceProblemModel::execute(const SpacePlan& plan, const SpaceExecuti
     flight.checker = &checker_;
     flight.world = settings.world.value_or(SpaceWorld{});
     flight.settles = settings.world.has_value() && is_at_rest(problem_.start);
-    flight.goals = &goals_;
+    flight.goals = settings.goals != nullptr ? settings.goals : &goals_;
     flight.is_over = settings.is_over;
     return fly(robot, plan, start_motion(problem_.start), flight);
 }

@@ -23,6 +23,7 @@ namespace downwash {
 struct SpaceExecutionSettings {
     bool aero = true;                 ///< false: as if there were no surface effects, and no flyable area
     std::optional<SpaceWorld> world;  ///< empty: the nominal one. In a world a vehicle that starts at rest has hovered
+    const SpaceGoalRule* goals = nullptr;  ///< in place of the problem's; nullptr: those
     StopCondition is_over;
 };
 
@@ -34,6 +35,9 @@ class DOWNWASH_EXPORT SpaceProblemModel {
 
     [[nodiscard]] const SpaceProblem& problem() const noexcept { return problem_; }
     [[nodiscard]] const Scene& scene() const noexcept { return *scene_; }
+    [[nodiscard]] const std::shared_ptr<const Scene>& shared_scene() const noexcept { return scene_; }
+    /// Collisions and clearances.
+    [[nodiscard]] const SpaceChecker& collisions() const noexcept { return checker_; }
 
     /// Flies a plan from the start of the problem to the end of the hover for its last goal, with surface effects
     /// evaluated directly.

@@ -56,7 +56,8 @@ bool is_space_robot_file(const std::filesystem::path& file) {
 }
 
 SpaceProblem read_space_problem(const std::filesystem::path& file, const std::function<void(SpaceProblem&)>& adjust,
-                                const std::function<void(const LocatedError&)>& on_warning) {
+                                const std::function<void(const LocatedError&)>& on_warning,
+                                const std::function<std::vector<KeyError>(const SpaceProblem&)>& further_errors) {
     SpaceTreeReader reader(space_problem_parameters());
     reader.read(file);
     if (adjust) {
@@ -64,6 +65,9 @@ SpaceProblem read_space_problem(const std::filesystem::path& file, const std::fu
     }
     if (!reader.is_full()) {
         reader.add(further_space_problem_errors(reader.model(), reader.wrong_keys()));
+    }
+    if (further_errors && reader.errors().empty()) {
+        reader.add(further_errors(reader.model()));
     }
     throw_errors(reader);
     if (on_warning) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/problems/located_error.hpp"
@@ -20,10 +21,12 @@ namespace downwash {
 /// space_problem_errors() finds nothing in it.
 /// @param adjust changes values before the problem is checked as a whole
 /// @param on_warning is told of keys by their former names and of everything that space_problem_warnings() finds
+/// @param further_errors what else speaks against a sound problem; located like all errors
 /// @throws ProblemFileError with every error that can be found in one reading (a hundred at most), and what adjust does
 [[nodiscard]] DOWNWASH_EXPORT SpaceProblem
 read_space_problem(const std::filesystem::path& file, const std::function<void(SpaceProblem&)>& adjust = {},
-                   const std::function<void(const LocatedError&)>& on_warning = {});
+                   const std::function<void(const LocatedError&)>& on_warning = {},
+                   const std::function<std::vector<KeyError>(const SpaceProblem&)>& further_errors = {});
 
 /// Reads a robot in space from a file of its own. @throws ProblemFileError
 /// @param on_warning is told of keys by their former names and of everything that space_robot_warnings() finds

@@ -49,7 +49,8 @@ class DOWNWASH_EXPORT RunFolder {
     RunRecord write(const Problem& problem, const std::string& problem_file, const std::vector<LocatedError>& warnings,
                     const Solution& solution, const std::optional<InputFacts>& inputs = {});
 
-    /// The same for a flight in space, without tree.csv. @return the same run, as read_space_run() would read it
+    /// The same for a flight in space; tree.csv is that of its search, if there was one. @return the same run, as
+    /// read_space_run() would read it
     /// @pre the solution has an execution
     SpaceRunRecord write(const SpaceProblem& problem, const std::string& problem_file,
                          const std::vector<LocatedError>& warnings, const SpaceSolution& solution,

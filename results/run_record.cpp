@@ -8,6 +8,7 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/sha256.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/controllers/space_axes.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
@@ -164,12 +165,17 @@ std::vector<std::string> flight_columns(const Robot& robot) {
     return names;
 }
 
-std::vector<std::string> flight_columns(const SpaceRobot& robot) {
+/// A flight without a row.
+SpaceFlight no_flight(const SpaceRobot& robot) {
     SpaceFlight none;
     none.joints = robot.joints();
     none.rotor_count = static_cast<int>(robot.plant.rotors.size());
     none.has_rotor_lag = robot.plant.time_constant_s > 0;
-    return trajectory_table(none).names;
+    return none;
+}
+
+std::vector<std::string> flight_columns(const SpaceRobot& robot) {
+    return trajectory_table(no_flight(robot)).names;
 }
 
 /// Reads solution.json and effective.yaml. @param read_model reads the latter
@@ -282,9 +288,14 @@ std::vector<std::pair<std::string, std::string>> run_files(const SpaceProblem& p
                                                            const SpaceSolution& solution, const fs::path& folder,
                                                            const std::vector<LocatedError>& warnings,
                                                            const std::optional<SpaceInputFacts>& inputs) {
-    std::vector<std::pair<std::string, std::string>> files{{"effective.yaml", effective_yaml(problem, folder)},
-                                                           {"trajectory.csv", trajectory_csv(*solution.execution)}};
-    const FileDigests digests{{files[1].first, sha256_hex(files[1].second)}};
+    std::vector<std::pair<std::string, std::string>> files{
+        {"effective.yaml", effective_yaml(problem, folder)},
+        {"trajectory.csv", trajectory_csv(solution.execution.value_or(no_flight(problem.robot)))}};
+    FileDigests digests{{files[1].first, sha256_hex(files[1].second)}};
+    if (solution.search != nullptr) {
+        files.emplace_back("tree.csv", tree_csv(solution.search->tree, axes_in_space(problem.robot.joints())));
+        digests.emplace(files.back().first, sha256_hex(files.back().second));
+    }
     files.emplace_back(
         solution_name,
         solution_json(solution, {problem.name, problem_file, problem_sha256(problem), warnings, inputs}, digests));

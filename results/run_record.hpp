@@ -64,7 +64,7 @@ struct SpaceRunRecord {
 /// The record of a flight in space that has just ended; the texts stay empty.
 [[nodiscard]] DOWNWASH_EXPORT SpaceRunRecord run_record(const SpaceProblem& problem, const SpaceSolution& solution);
 
-/// The files that a flight in space leaves in a folder: see above. There is no tree.csv: nothing was searched.
+/// The files that a flight in space leaves in a folder: see above. There is a tree.csv if a search found the plan.
 /// @pre the solution has an execution
 [[nodiscard]] DOWNWASH_EXPORT std::vector<std::pair<std::string, std::string>> run_files(
     const SpaceProblem& problem, const std::string& problem_file, const SpaceSolution& solution,

@@ -4,63 +4,11 @@
 #include "downwash/base/version.hpp"
 #include "downwash/results/input_json.hpp"
 #include "downwash/results/json_parts.hpp"
+#include "downwash/results/search_json.hpp"
 #include "downwash/results/solution_file.hpp"
 
 namespace downwash {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-/// The coordinates of a configuration by the names of their axes.
-Json configuration_json(const Configuration& at, std::span<const Axis> axes) {
-    Json json;
-    for (std::size_t i = 0; i < axes.size(); ++i) {
-        json[std::string(axes[i].position)] = json_number(at[i]);
-    }
-    return json;
-}
-
-Json obstruction_json(const std::optional<Obstruction>& obstruction, std::span<const Axis> axes) {
-    if (!obstruction) {
-        return {};
-    }
-    Json json = {{"cause", obstruction->cause}};
-    json.update(configuration_json(obstruction->at, axes));
-    json["goal_distance_m"] = json_number(obstruction->goal_distance_m);
-    json["obstacles"] = obstruction->obstacles;
-    return json;
-}
-
-Json certificate_json(const std::optional<Certificate>& certificate) {
-    if (!certificate) {
-        return {};
-    }
-    Json worst = Json::array();
-    for (const WorldSample& each : certificate->worst) {
-        worst.push_back({{"world", each.world},
-                         {"outcome", name_of(each.outcome)},
-                         {"min_clearance_m", json_number(each.min_clearance_m)}});
-    }
-    const auto clearance_m = [&](double quantile_m) {
-        return certificate->worlds > 0 ? json_number(quantile_m) : Json{};  // of no flight there is none
-    };
-    const auto& clearance = certificate->clearance_m;
-    const auto& probability = certificate->failure_probability;
-    return {{"given", certificate->is_given},
-            {"worlds", certificate->worlds},
-            {"failures", certificate->failures},
-            {"failure_probability",
-             {{"estimate", probability.estimate}, {"low", probability.low}, {"high", probability.high}}},
-            {"max_failure_probability", certificate->max_failure_probability},
-            {"confidence", certificate->confidence},
-            {"attempts", certificate->attempts},
-            {"clearance_m",
-             {{"p01", clearance_m(clearance.p01)},
-              {"p10", clearance_m(clearance.p10)},
-              {"p50", clearance_m(clearance.p50)}}},
-            {"causes", certificate->causes},
-            {"worst", std::move(worst)}};
-}
 
 /// Targets and alternatives by their numbers from 1.
 Json order_json(const VisitOrder& order) {
@@ -79,37 +27,6 @@ Json order_json(const VisitOrder& order) {
             {"is_best", order.is_best},
             {"legs", order.legs},
             {"cost_of_legs", json_number(order.cost_of_legs)}};
-}
-
-Json planning_json(const Found& found, const SearchRecord& record, std::span<const Axis> axes) {
-    Json improvements = Json::array();
-    for (const Improvement& improvement : record.improvements) {
-        improvements.push_back({{"wall_s", json_number(improvement.wall_s)},
-                                {"iteration", improvement.iteration},
-                                {"cost", json_number(improvement.cost)},
-                                {"flown_cost", json_number(improvement.flown_cost)}});
-    }
-    return {{"wall_s", json_number(record.wall_s)},
-            {"map_wall_s", json_number(record.map_wall_s)},
-            {"flight_wall_s", json_number(found.flight_wall_s)},
-            {"first_solution_wall_s", json_number(record.first_solution_wall_s)},
-            {"first_certified_wall_s", json_number(record.first_certified_wall_s)},
-            {"iterations", record.iterations},
-            {"edges_simulated", record.edges_simulated},
-            {"simulated_s", json_number(record.simulated_s)},
-            {"states_checked", record.states_checked},
-            {"improvements", std::move(improvements)},
-            {"rejected", record.rejected},
-            {"stopped_by", record.stopped_by},
-            {"candidates",
-             {{"checked", record.candidates.checked},
-              {"failed_execution", record.candidates.failed_execution},
-              {"failed_certificate", record.candidates.failed_certificate},
-              {"worse_stops", record.candidates.worse_stops},
-              {"unfinished", record.candidates.unfinished}}},
-            {"nearest_approach_m", json_number(found.nearest_approach_m)},
-            {"obstruction", obstruction_json(found.obstruction, axes)},
-            {"goal", found.missed_goal ? Json(*found.missed_goal) : Json()}};
 }
 
 Json knot_json(const ReferenceKnot& knot, const Plan& plan) {
@@ -203,7 +120,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"version", version()},
         {"threads", solution.threads},
         {"cost", solution.plan ? json_number(solution.cost) : Json()},
-        {"planning", planning_json(solution, solution.planning, problem.axes)},
+        {"planning", planning_json<planning::Plane>(solution, solution.planning, problem.axes)},
         {"certificate", certificate_json(solution.certificate)},
         {"plan", plan_json(solution.plan)},
         {"stops", stops_json(solution.safe_stops, solution.plan ? solution.plan->tick_s : 0, problem.axes)},

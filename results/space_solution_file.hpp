@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/planner/solution.hpp"
+#include "downwash/planner/space_solve.hpp"
 #include "downwash/problems/input_facts.hpp"
 #include "downwash/problems/located_error.hpp"
 #include "downwash/problems/space_problem.hpp"
@@ -18,7 +20,7 @@
 
 namespace downwash {
 
-/// A plan in space, its flight, and the settings that it was asked with. Nothing searches in space: plans are given.
+/// A plan in space, its flight, and the settings that it was asked with.
 struct SpaceSolution {
     Status status = Status::solved;
     bool interrupted = false;
@@ -27,6 +29,8 @@ struct SpaceSolution {
     CostFunction objective;
     std::uint32_t seed = 1;
     int threads = 1;
+    int joints = 0;                                   ///< of the robot
+    std::shared_ptr<const SpaceSearchResult> search;  ///< that found the plan; nullptr: it was given
     std::optional<SpacePlan> plan;
     std::optional<SpaceFlight> execution;           ///< the whole plan flown from the start of the problem
     bool aero = true;                               ///< whether surfaces acted on the rotors in that flight

@@ -7,12 +7,11 @@
 #include "downwash/controllers/space_axes.hpp"
 #include "downwash/results/input_json.hpp"
 #include "downwash/results/json_parts.hpp"
+#include "downwash/results/search_json.hpp"
 #include "downwash/results/space_solution_file.hpp"
 
 namespace downwash {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 Json plan_json(const std::optional<SpacePlan>& plan) {
     if (!plan) {
@@ -100,6 +99,8 @@ double worst_goal_error_m(const SpaceFlight& flight) noexcept {
 
 std::string solution_json(const SpaceSolution& solution, const SpaceProblemReference& problem,
                           const FileDigests& files) {
+    const SpaceSearchResult* const search = solution.search.get();
+    const std::span<const Axis> axes = axes_in_space(solution.joints);
     const Json document = {
         {"schema", solution_schema},
         {"status", name_of(solution.status)},
@@ -113,9 +114,9 @@ std::string solution_json(const SpaceSolution& solution, const SpaceProblemRefer
         {"seed", solution.seed},
         {"version", version()},
         {"threads", solution.threads},
-        {"cost", nullptr},         // that of a search
-        {"planning", nullptr},     // its record
-        {"certificate", nullptr},  // what it flew in worlds
+        {"cost", search != nullptr && solution.plan ? json_number(search->cost) : Json()},
+        {"planning", search != nullptr ? planning_json<planning::Space>(*search, search->planning, axes) : Json()},
+        {"certificate", search != nullptr ? certificate_json(search->certificate) : Json()},
         {"plan", plan_json(solution.plan)},
         {"stops", nullptr},
         {"execution", execution_json(solution)},

@@ -6,21 +6,33 @@
 #include "downwash/base/text.hpp"
 
 namespace downwash {
+namespace {
 
-std::string tree_csv(std::span<const TreeNode> tree, std::span<const Axis> axes) {
+template <class Node>
+std::string text_of(std::span<const Node> tree, std::span<const Axis> axes) {
     std::string text;
     for (const Axis& axis : axes) {
         text += std::string(axis.position) + ',';
     }
     text += "parent\n";
-    for (const TreeNode& node : tree) {
+    for (const Node& node : tree) {
         for (std::size_t i = 0; i < axes.size(); ++i) {
             text += to_text(node.at[i]) + ',';
         }
-        text += node.parent == TreeNode::no_parent ? "" : std::to_string(node.parent);
+        text += node.parent == Node::no_parent ? "" : std::to_string(node.parent);
         text += '\n';
     }
     return text;
+}
+
+}  // namespace
+
+std::string tree_csv(std::span<const TreeNode> tree, std::span<const Axis> axes) {
+    return text_of(tree, axes);
+}
+
+std::string tree_csv(std::span<const SpaceTreeNode> tree, std::span<const Axis> axes) {
+    return text_of(tree, axes);
 }
 
 NumberTable tree_table(std::span<const TreeNode> tree, std::span<const Axis> axes) {

@@ -13,6 +13,7 @@ namespace downwash {
 /// a root). Every number is the shortest that reads back as the very same.
 /// @param axes of the problem
 [[nodiscard]] DOWNWASH_EXPORT std::string tree_csv(std::span<const TreeNode> tree, std::span<const Axis> axes);
+[[nodiscard]] DOWNWASH_EXPORT std::string tree_csv(std::span<const SpaceTreeNode> tree, std::span<const Axis> axes);
 
 /// The numbers of a tree as a table; the parent of a root is NaN.
 [[nodiscard]] DOWNWASH_EXPORT NumberTable tree_table(std::span<const TreeNode> tree, std::span<const Axis> axes);

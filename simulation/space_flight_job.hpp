@@ -16,6 +16,9 @@ namespace downwash {
 /// that it lacks is 0. The law's memory is that of the vehicle's own number of joints.
 using AnySpaceState = simulation::SpaceFlightState<double, max_joints>;
 
+/// Whether two vehicles have the same state and memory to the last bit.
+[[nodiscard]] DOWNWASH_EXPORT bool is_same(const AnySpaceState& a, const AnySpaceState& b) noexcept;
+
 /// The outcome of a flight along one segment in space.
 struct SpaceSegmentFlight {
     Rejection rejection = Rejection::none;
@@ -38,6 +41,11 @@ struct SpaceFlightJob {
     /// World of the flight; nullptr: the nominal one. Must outlive the flight.
     const SpaceWorld* world = nullptr;
     std::int64_t first_tick = 0;  ///< control tick, from the start of the whole flight, with which it begins
+    /// The vehicle must meet the pool's goal, slowly, this many ticks before the end of the last leg, every
+    /// judging_step_ticks from there on, and at its end. Otherwise the flight is rejected as goal_missed. The last leg
+    /// is then a hover. 0: no goal.
+    std::int64_t judged_ticks = 0;
+    static constexpr std::int64_t judging_step_ticks = 5;
 
     /// The leg on which the flight ended early; nullptr when it did not.
     [[nodiscard]] const SpaceFlightLeg* rejected_leg() const noexcept {

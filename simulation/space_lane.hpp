@@ -121,9 +121,16 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         leg.flight.max_tracking_error_m = sums.max_tracking_error_m;
         leg.flight.max_saturation = sums.max_saturation;
         const bool is_end = leg.flight.ticks >= leg.segment.ticks();
+        const bool is_due = lanes_->tick[number_] >= lanes_->ticks[number_];
         Rejection rejection = static_cast<Rejection>(static_cast<int>(lanes_->rejection[number_]));
         if (rejection == Rejection::none && lanes_->is_unclear[number_] > 0) {
             rejection = rejection_nearby();
+        }
+        if (rejection == Rejection::none && is_end) {
+            rejection = rejection_of(leg.flight);
+        }
+        if (rejection == Rejection::none && is_due && is_judged_leg() && !meets_goal_now()) {
+            rejection = Rejection::goal_missed;
         }
         const auto& budget_j = setting_->setup.energy_budget_j;
         if (rejection == Rejection::none && is_end && leg_ + 1 == job_->legs.size() && budget_j &&
@@ -134,6 +141,9 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
             end_with(rejection);
         } else if (is_interrupted) {
             end_with(Rejection::interrupted);
+        } else if (is_due) {
+            lanes_->ticks[number_] = std::min(lanes_->ticks[number_] + SpaceFlightJob::judging_step_ticks,
+                                              static_cast<double>(leg.segment.ticks()));
         }
     }
 
@@ -201,7 +211,9 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         lanes_->inverse_duration_1_s[number_] = segment.inverse_duration_1_s();
         lanes_->tick[number_] = 0;
         lanes_->first_tick[number_] = static_cast<double>(first_tick_);
-        lanes_->ticks[number_] = static_cast<double>(segment.ticks());
+        // Where the goal is judged, the kernel stops as at an end. A hover is the same point there.
+        lanes_->ticks[number_] = static_cast<double>(
+            is_judged_leg() ? std::max<std::int64_t>(1, segment.ticks() - job_->judged_ticks) : segment.ticks());
         write(BasicSpaceSums<double>{space_tracking_error_m(plant().q, from.position), 0}, lanes_->sums);
     }
 
@@ -217,9 +229,39 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         return rejection_nearby();
     }
 
-    /// Collision and flyable area at the state of now; how far the robot may move until the next look.
+    [[nodiscard]] bool is_judged_leg() const noexcept {
+        return job_->judged_ticks > 0 && leg_ + 1 == job_->legs.size();
+    }
+    [[nodiscard]] bool meets_goal_now() const {
+        const SpaceMotion motion = motion_of<n>(plant());
+        return meets_goal(setting_->setup.goal->error({}, motion, *description_), motion);
+    }
+
+    /// What speaks against a leg that was flown to its end.
+    [[nodiscard]] Rejection rejection_of(const SpaceSegmentFlight& flight) const noexcept {
+        const auto& rules = setting_->setup.rules;
+        if (rules && !(flight.max_tracking_error_m <= rules->max_tracking_error_m)) {
+            return Rejection::tracking;
+        }
+        return rules && !(flight.max_saturation <= rules->max_saturation) ? Rejection::saturation : Rejection::none;
+    }
+
+    /// Bounds, joint limits, collision and flyable area at the state of now; how far the robot may move until the next
+    /// look.
     Rejection rejection_nearby() {
         double free_m = std::numeric_limits<double>::infinity();
+        if (const auto& rules = setting_->setup.rules) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double at_m = lanes_->vehicle[i][number_];
+                free_m = std::min({free_m, at_m - rules->low_m[i], rules->high_m[i] - at_m});
+            }
+            if (!(free_m >= 0)) {
+                return Rejection::bounds;
+            }
+            if (rules->keeps_joint_limits && !is_within_joint_limits()) {
+                return Rejection::arm_limits;
+            }
+        }
         if (const SpaceChecker* const checker = setting_->setup.checker) {
             const SpacePose pose = pose_in(lanes_->vehicle);
             double moved_m = motion_m(model_->reach, change_between(looked_at_, pose));
@@ -233,7 +275,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
                 free_motion_m_ -= free_motion_error_m(checker->kind());
                 moved_m = 0;
             }
-            free_m = free_motion_m_ - moved_m;
+            free_m = std::min(free_m, free_motion_m_ - moved_m);
         }
         const VolumeMap* const map =
             setting_->setup.volumes != nullptr ? setting_->setup.volumes->rotor.get() : nullptr;

@@ -9,6 +9,7 @@
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/cli/execute_arguments.hpp"
+#include "downwash/cli/in_space.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/plan_origin.hpp"
@@ -54,10 +55,15 @@ std::string goal_rows(const SpaceFlight& flight) {
     return text;
 }
 
-std::string summary_of(const SpaceSolution& solution, const std::filesystem::path& folder) {
+}  // namespace
+
+std::string space_summary(const std::string& verdict, const SpaceSolution& solution, const std::string& more) {
+    std::string text = verdict + "\n\n";
+    text += table_row("status", std::string(name_of(solution.status))) + more;
+    if (!solution.execution) {
+        return text;
+    }
     const SpaceFlight& flight = *solution.execution;
-    std::string text = verdict_on_outcome(flight.outcome, solution.aero, "reaches the goal and hovers there.") + "\n\n";
-    text += table_row("status", std::string(name_of(solution.status)));
     if (solution.execution_world) {
         text += table_row(
             "world", fmt::format("{} of seed {}", solution.execution_world->index, solution.execution_world->seed));
@@ -77,14 +83,12 @@ std::string summary_of(const SpaceSolution& solution, const std::filesystem::pat
     text += table_row("saturation", fmt::format("{:.3f}", flight.max_saturation));
     text += table_row("min. clearance",
                       std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
-    return text + file_rows(folder, "solution.json, trajectory.csv, effective.yaml");
+    return text;
 }
-
-}  // namespace
 
 ExitCode execute_in_space(const ExecuteArguments& given) {
     if (given.planner.is_any()) {
-        throw UsageError("--margin is a setting of searches, and plans are not searched for in space yet");
+        throw UsageError("--margin is a setting of searches, and a flight in space is not rejected for its margin");
     }
     Interruption interruption;
     std::vector<LocatedError> warnings;
@@ -120,7 +124,14 @@ ExitCode execute_in_space(const ExecuteArguments& given) {
     const SpaceRunRecord record =
         folder.write(problem, given.problem, warnings, solution, input_facts(problem, model.scene()));
     write_page(folder.path(), record);
-    fmt::print("{}", given.as_json ? record.solution_text : summary_of(solution, folder.path()));
+    if (given.as_json) {
+        fmt::print("{}", record.solution_text);
+    } else {
+        const std::string verdict =
+            verdict_on_outcome(solution.execution->outcome, solution.aero, "reaches the goal and hovers there.");
+        fmt::print("{}{}", space_summary(verdict, solution),
+                   file_rows(folder.path(), "solution.json, trajectory.csv, effective.yaml"));
+    }
     if (interruption.code() != ExitCode::done) {
         return interruption.code();
     }

@@ -7,8 +7,11 @@
 
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/exit_code.hpp"
+#include "downwash/cli/interruption.hpp"
+#include "downwash/cli/planner_options.hpp"
 #include "downwash/problems/designed_robot.hpp"
 #include "downwash/problems/space_problem.hpp"
+#include "downwash/results/space_solution_file.hpp"
 
 // What commands do with robots and problems in space that have the same names in the plane.
 
@@ -26,6 +29,21 @@ struct HoldInSpace {
     bool as_json = false;
 };
 [[nodiscard]] ExitCode hold_in_space(const HoldInSpace& given);
+
+/// `solve`.
+struct SolveInSpace {
+    std::string problem;
+    const PlannerOptions& planner;
+    int threads = default_threads();
+    std::optional<std::string> out;
+    const CommandLimits& limits;
+    bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, force = false;
+};
+[[nodiscard]] ExitCode solve_in_space(const SolveInSpace& given);
+
+/// A flight in space for people: a verdict and a table. @param more rows of it, before those of the flight
+[[nodiscard]] std::string space_summary(const std::string& verdict, const SpaceSolution& solution,
+                                        const std::string& more = {});
 
 /// `margins`.
 [[nodiscard]] ExitCode margins_in_space(const std::string& file, const std::vector<double>& joints_deg, bool as_json);

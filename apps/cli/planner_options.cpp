@@ -129,4 +129,11 @@ void PlannerOptions::apply_to(Problem& problem) const {
     }
 }
 
+void PlannerOptions::apply_to(SpaceProblem& problem) const {
+    Problem settings;  // both families have the same
+    settings.planner = problem.planner;
+    apply_to(settings);
+    problem.planner = settings.planner;
+}
+
 }  // namespace downwash::cli

@@ -6,6 +6,7 @@
 
 #include "downwash/cli/command_line.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/space_problem.hpp"
 
 namespace downwash::cli {
 
@@ -21,6 +22,7 @@ class PlannerOptions {
     /// Overrides the settings of the file with the options that were given.
     /// @throws UsageError with every option whose value is invalid or out of range
     void apply_to(Problem& problem) const;
+    void apply_to(SpaceProblem& problem) const;
     /// Whether any was given.
     [[nodiscard]] bool is_any() const noexcept { return !given_.empty(); }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "downwash/cli/common_options.hpp"
+#include "downwash/cli/in_space.hpp"
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/planner_options.hpp"
@@ -15,10 +16,12 @@
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/search_results.hpp"
+#include "downwash/cli/usage_error.hpp"
 #include "downwash/planner/remedies.hpp"
 #include "downwash/problems/cut_off_goals.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/problems/visit_order.hpp"
 
 namespace downwash::cli {
@@ -81,6 +84,13 @@ void print_remedies(const Problem& problem, SolveOptions options, bool is_quiet)
 }
 
 ExitCode run(const SolveArguments& given) {
+    if (is_space_problem_file(given.problem)) {
+        if (given.tries_remedies) {
+            throw UsageError("--remedies changes problems in a vertical plane, and this one is in space: leave it out");
+        }
+        return solve_in_space({given.problem, given.planner, given.threads, given.out, given.limits,
+                               given.stop_at_first, given.no_cache, given.is_quiet, given.as_json, given.force});
+    }
     Interruption interruption(given.limits);
     std::vector<LocatedError> warnings;
     const PlannableProblem plannable = read_plannable_problem(

@@ -145,18 +145,18 @@ const oc::SimpleSetupPtr& FlightSetup::simple_setup() const noexcept {
 
 ob::PlannerPtr FlightSetup::make_flight_tree_planner() const {
     const auto planner = std::make_shared<ControlledFlightTree>(impl_->setup->getSpaceInformation(), impl_->task);
-    planner->set_max_iterations(impl_->plannable.problem.planner.max_iterations);
+    planner->search().set_max_iterations(impl_->plannable.problem.planner.max_iterations);
     planning::CandidateHooks hooks;
     hooks.survives_execution = [impl = impl_.get(), asking = planner.get()](const planning::Candidate& candidate) {
-        const Plan plan = planning::plan_through(candidate.moments, impl->model.flight->tick().tick_s);
-        return asking->has_users_goal() || impl->counts(plan, [asking] { return asking->is_over(); });
+        const Plan plan = planning::plan_through(candidate.moments, impl->task.blank_plan);
+        return asking->has_users_goal() || impl->counts(plan, [asking] { return asking->search().is_over(); });
     };
     hooks.counterexamples = [impl = impl_.get()] {
         const bool has_failed = impl->certificate && !impl->certificate->is_given;
         return has_failed ? impl->worlds->counterexamples(*impl->certificate, impl->start)
                           : std::vector<planning::Counterexample>{};
     };
-    planner->set_hooks(std::move(hooks));
+    planner->search().set_hooks(std::move(hooks));
     return planner;
 }
 
@@ -199,7 +199,7 @@ std::optional<Plan> FlightSetup::plan_of(const ob::Path& path) const {
     impl_->planned.lead_to(users_goal ? &*users_goal : nullptr);
     const GoalScope scope(impl_->planned);
     if (moments.size() > 1 && planning::ends_with_hover(moments, impl_->planned)) {
-        return planning::plan_through(moments, impl_->plannable.model->tick().tick_s);
+        return planning::plan_through(moments, impl_->task.blank_plan);
     }
     const std::optional<planning::Closing> closing = impl_->flights.closing(moments.back());
     return closing ? std::optional(impl_->flights.plan(moments, closing)) : std::nullopt;

@@ -20,12 +20,14 @@ bool is_better(double cost, double old_cost, double saved) {
 
 }  // namespace
 
-ChangeFlights::ChangeFlights(FlightPoint start, PlannedFlights& flights)
+template <class Family>
+ChangeFlightsOf<Family>::ChangeFlightsOf(FlightPoint start, PlannedFlights& flights)
     : start_(std::move(start)), flights_(flights) {}
 
-std::optional<ChangedPlan> ChangeFlights::timed(std::vector<ReferencePoint> points,
-                                                const std::vector<std::int64_t>& old_ticks, std::size_t first,
-                                                std::size_t last, FlightStatistics& counts) const {
+template <class Family>
+auto ChangeFlightsOf<Family>::timed(std::vector<ReferencePoint> points, const std::vector<std::int64_t>& old_ticks,
+                                    std::size_t first, std::size_t last, FlightStatistics& counts) const
+    -> std::optional<ChangedPlan> {
     ChangedPlan change{std::move(points), {}, first, last};
     const std::size_t segments = change.points.size() - 1;
     const std::size_t old_segments = old_ticks.size();
@@ -51,9 +53,10 @@ std::optional<ChangedPlan> ChangeFlights::timed(std::vector<ReferencePoint> poin
     return total <= max_plan_ticks ? std::optional(std::move(change)) : std::nullopt;
 }
 
-FleetJob ChangeFlights::job_for(const Fleet& from, const ChangedPlan& change, std::size_t first,
-                                std::size_t last) const {
-    const double tick_s = flights_.task().model.tick().tick_s;
+template <class Family>
+auto ChangeFlightsOf<Family>::job_for(const Fleet& from, const ChangedPlan& change, std::size_t first,
+                                      std::size_t last) const -> FleetJob {
+    const double tick_s = flights_.task().tick_s;
     std::vector<FlightLeg> legs;
     std::int64_t judged_ticks = 0;
     for (std::size_t i = first; i <= last; ++i) {
@@ -68,7 +71,9 @@ FleetJob ChangeFlights::job_for(const Fleet& from, const ChangedPlan& change, st
                         judged_ticks);
 }
 
-double ChangeFlights::nominal_cost_after(const FlownPlan& base, const ChangedPlan& change, const FleetJob& job) const {
+template <class Family>
+double ChangeFlightsOf<Family>::nominal_cost_after(const FlownPlan& base, const ChangedPlan& change,
+                                                   const FleetJob& job) const {
     double cost = base.nominal_costs[change.first];
     const FlightState* before = &base.fleets[change.first].front();
     for (const FlightLeg& leg : job.legs()) {
@@ -78,7 +83,9 @@ double ChangeFlights::nominal_cost_after(const FlownPlan& base, const ChangedPla
     return cost;
 }
 
-FlownPlan ChangeFlights::flown(const FlownPlan& base, const ChangedPlan& change, const FleetJob& job) const {
+template <class Family>
+auto ChangeFlightsOf<Family>::flown(const FlownPlan& base, const ChangedPlan& change, const FleetJob& job) const
+    -> FlownPlan {
     FlownPlan plan;
     plan.points = change.points;
     plan.ticks = change.ticks;
@@ -99,7 +106,9 @@ FlownPlan ChangeFlights::flown(const FlownPlan& base, const ChangedPlan& change,
     return plan;
 }
 
-std::vector<std::optional<FlownPlan>> ChangeFlights::flown_whole(const std::vector<ChangedPlan>& plans) {
+template <class Family>
+auto ChangeFlightsOf<Family>::flown_whole(const std::vector<ChangedPlan>& plans)
+    -> std::vector<std::optional<FlownPlan>> {
     FlownPlan start;
     start.fleets.push_back(flights_.fleet_at_start(start_.vehicle));
     start.costs.push_back(0);
@@ -121,14 +130,15 @@ std::vector<std::optional<FlownPlan>> ChangeFlights::flown_whole(const std::vect
     return flown_plans;
 }
 
-double ChangeFlights::saved_before_rounding(const FlownPlan& base, const ChangedPlan& change) const {
+template <class Family>
+double ChangeFlightsOf<Family>::saved_before_rounding(const FlownPlan& base, const ChangedPlan& change) const {
     const SearchTask& task = flights_.task();
     if (task.problem.planner.objective.single() != Objective::time || !flights_.limits().max_thrust_ratio) {
         return 0;
     }
     const auto needed_s = [&](const std::vector<ReferencePoint>& points, std::size_t first, std::size_t last) {
         constexpr double parts = 64;
-        const double part_s = task.model.tick().tick_s / parts;
+        const double part_s = task.tick_s / parts;
         std::int64_t all = 0;
         for (std::size_t i = first; i <= last; ++i) {
             all += shortest_ticks(points[i], points[i + 1], flights_.limits(), part_s);
@@ -139,14 +149,16 @@ double ChangeFlights::saved_before_rounding(const FlownPlan& base, const Changed
     return needed_s(base.points, change.first, last_before) - needed_s(change.points, change.first, change.last);
 }
 
-bool ChangeFlights::is_whole(const ChangedPlan& change, const FleetJob& job) {
+template <class Family>
+bool ChangeFlightsOf<Family>::is_whole(const ChangedPlan& change, const FleetJob& job) {
     return change.first + job.legs().size() == change.ticks.size() + 1;
 }
 
 /// Whether a change, as far as a job flies it, is accepted in the nominal world and costs less there than the old plan
 /// did up to the same place.
-bool ChangeFlights::costs_less(const FlownPlan& base, const ChangedPlan& change, const FleetJob& job,
-                               double saved) const {
+template <class Family>
+bool ChangeFlightsOf<Family>::costs_less(const FlownPlan& base, const ChangedPlan& change, const FleetJob& job,
+                                         double saved) const {
     if (!job.is_accepted()) {
         return false;
     }
@@ -157,7 +169,8 @@ bool ChangeFlights::costs_less(const FlownPlan& base, const ChangedPlan& change,
 
 /// A change in the nominal world: its own segments and, where they get to the old plan's next corner for less, the rest
 /// of the plan, hold included.
-class ChangeFlights::Chain final : public FlightChain {
+template <class Family>
+class ChangeFlightsOf<Family>::Chain final : public Family::FlightChain {
  public:
     /// @param job gets the flight
     Chain(const ChangeFlights& flights, const FlownPlan& base, const ChangedPlan& change, double saved, FleetJob& job)
@@ -192,7 +205,9 @@ class ChangeFlights::Chain final : public FlightChain {
     std::size_t asked_ = 0;  ///< how often for a job
 };
 
-void ChangeFlights::fly_nominal(std::span<ChangeBatch* const> batches, std::span<const FlownPlan* const> bases) {
+template <class Family>
+void ChangeFlightsOf<Family>::fly_nominal(std::span<ChangeBatch* const> batches,
+                                          std::span<const FlownPlan* const> bases) {
     if (flights_.can_fly_chains()) {
         fly_chains(batches, bases);
         return;
@@ -202,7 +217,9 @@ void ChangeFlights::fly_nominal(std::span<ChangeBatch* const> batches, std::span
     }
 }
 
-void ChangeFlights::fly_chains(std::span<ChangeBatch* const> batches, std::span<const FlownPlan* const> bases) {
+template <class Family>
+void ChangeFlightsOf<Family>::fly_chains(std::span<ChangeBatch* const> batches,
+                                         std::span<const FlownPlan* const> bases) {
     std::deque<Chain> flights;
     std::vector<FlightChain*> chains;
     for (std::size_t i = 0; i < batches.size(); ++i) {
@@ -229,7 +246,8 @@ void ChangeFlights::fly_chains(std::span<ChangeBatch* const> batches, std::span<
 }
 
 /// For flights that cannot be flown as chains.
-void ChangeFlights::fly_in_two_steps(ChangeBatch& batch, const FlownPlan& base) {
+template <class Family>
+void ChangeFlightsOf<Family>::fly_in_two_steps(ChangeBatch& batch, const FlownPlan& base) {
     for (const ChangedPlan& change : batch.changes) {
         batch.jobs.push_back(job_for({base.fleets[change.first].front()}, change, change.first, change.last));
         batch.saved.push_back(saved_before_rounding(base, change));
@@ -250,7 +268,8 @@ void ChangeFlights::fly_in_two_steps(ChangeBatch& batch, const FlownPlan& base) 
     }
 }
 
-std::optional<FlownPlan> ChangeFlights::best_of(const FlownPlan& base, ChangeBatch& batch) {
+template <class Family>
+auto ChangeFlightsOf<Family>::best_of(const FlownPlan& base, ChangeBatch& batch) -> std::optional<FlownPlan> {
     std::vector<std::size_t> promising;
     for (std::size_t i = 0; i < batch.jobs.size(); ++i) {
         if (is_whole(batch.changes[i], batch.jobs[i]) &&
@@ -276,5 +295,8 @@ std::optional<FlownPlan> ChangeFlights::best_of(const FlownPlan& base, ChangeBat
     }
     return std::nullopt;
 }
+
+template class ChangeFlightsOf<Plane>;
+template class ChangeFlightsOf<Space>;
 
 }  // namespace downwash::planning

@@ -11,7 +11,11 @@
 namespace downwash::planning {
 
 /// A plan with all that was found out by flying it, hold included.
-struct FlownPlan {
+template <class Family>
+struct FlownPlanOf {
+    using ReferencePoint = typename Family::ReferencePoint;
+    using Fleet = FleetOf<Family>;
+
     std::vector<ReferencePoint> points;  ///< the first is the start, the last at rest at the goal
     std::vector<Fleet> fleets;           ///< the vehicle in every world at each point, and after the hold
     std::vector<double> costs;           ///< from the start up to each point
@@ -19,28 +23,57 @@ struct FlownPlan {
     std::vector<std::int64_t> ticks;     ///< from each point to the next
     double cost = 0, nominal_cost = 0;   ///< hold included
 };
+using FlownPlan = FlownPlanOf<Plane>;
 
 /// A changed plan that may be worth flying.
-struct ChangedPlan {
+template <class Family>
+struct ChangedPlanOf {
+    using ReferencePoint = typename Family::ReferencePoint;
+
     std::vector<ReferencePoint> points;
     std::vector<std::int64_t> ticks;
     std::size_t first = 0, last = 0;  ///< segments that differ from a plan that was flown
 };
+using ChangedPlan = ChangedPlanOf<Plane>;
 
 /// Changes of one plan that are flown side by side, and what became of them in the nominal world.
-struct ChangeBatch {
+template <class Family>
+struct ChangeBatchOf {
+    using FleetJob = FleetJobOf<Family>;
+    using ChangedPlan = ChangedPlanOf<Family>;
+    using FlightStatistics = FlightStatisticsOf<Family>;
+
     std::vector<ChangedPlan> changes;
     std::vector<double> saved;   ///< of each, by ChangeFlights::saved_before_rounding()
     std::vector<FleetJob> jobs;  ///< of the whole plan where the change itself is promising
     FlightStatistics counts;     ///< of drawing and flying them, not yet counted
 };
+using ChangeBatch = ChangeBatchOf<Plane>;
 
 /// Flies changed plans as far as they are promising: the changed segments in the nominal world, then the rest of the
 /// plan with its hold, then all of it in the other worlds.
-class ChangeFlights {
+template <class Family>
+class ChangeFlightsOf {
  public:
+    using ChangeFlights = ChangeFlightsOf;
+    using ReferencePoint = typename Family::ReferencePoint;
+    using ReferenceSegment = typename Family::ReferenceSegment;
+    using FlightState = typename Family::FlightState;
+    using FlightJob = typename Family::FlightJob;
+    using FlightLeg = typename Family::FlightLeg;
+    using FlightChain = typename Family::FlightChain;
+    using Fleet = FleetOf<Family>;
+    using FleetJob = FleetJobOf<Family>;
+    using SearchTask = SearchTaskOf<Family>;
+    using FlightPoint = FlightPointOf<Family>;
+    using PlannedFlights = PlannedFlightsOf<Family>;
+    using ChangedPlan = ChangedPlanOf<Family>;
+    using ChangeBatch = ChangeBatchOf<Family>;
+    using FlownPlan = FlownPlanOf<Family>;
+    using FlightStatistics = FlightStatisticsOf<Family>;
+
     /// @param start the moment at which all plans begin   @param flights must outlive it
-    ChangeFlights(FlightPoint start, PlannedFlights& flights);
+    ChangeFlightsOf(FlightPoint start, PlannedFlights& flights);
 
     /// Gives segments `first` to `last` as few ticks as they need, if they may be worth flying. The others keep their
     /// ticks; their numbers may have shifted by a corner more or less.
@@ -82,5 +115,6 @@ class ChangeFlights {
     FlightPoint start_;
     PlannedFlights& flights_;
 };
+using ChangeFlights = ChangeFlightsOf<Plane>;
 
 }  // namespace downwash::planning

@@ -16,7 +16,6 @@ class ClosedLoopFlights final : public EdgeFlights {
     [[nodiscard]] SegmentFlight fly_again(const ReferenceSegment& segment, FlightState& vehicle,
                                           const FlightWorld& in) const override;
     void use_threads(int threads) override { pool_.use_threads(threads); }
-    [[nodiscard]] const FlightRules& rules() const noexcept override { return pool_.rules(); }
 
  private:
     const SearchTask& task_;

@@ -10,12 +10,20 @@ namespace downwash::planning {
 
 /// How the edges of a search are flown. This is all in which the levels of awareness differ: an edge of MP-ARM is a
 /// line, one of MP-ARM-DA a flight in free air, one of MP-ARM-ADA a flight through the aero map.
-class EdgeFlights {
+template <class Family>
+class EdgeFlightsOf {
  public:
-    EdgeFlights() = default;
-    virtual ~EdgeFlights() = default;
-    EdgeFlights(const EdgeFlights&) = delete;
-    EdgeFlights& operator=(const EdgeFlights&) = delete;
+    using ReferenceSegment = typename Family::ReferenceSegment;
+    using FlightState = typename Family::FlightState;
+    using FlightJob = typename Family::FlightJob;
+    using FlightChain = typename Family::FlightChain;
+    using SegmentFlight = typename Family::SegmentFlight;
+    using FlightWorld = typename Family::FlightWorld;
+
+    EdgeFlightsOf() = default;
+    virtual ~EdgeFlightsOf() = default;
+    EdgeFlightsOf(const EdgeFlightsOf&) = delete;
+    EdgeFlightsOf& operator=(const EdgeFlightsOf&) = delete;
 
     /// Flies jobs, each to its end or to where something rejects it.
     /// @return how many states were checked for collision
@@ -31,9 +39,7 @@ class EdgeFlights {
 
     /// Sets how many threads the next batches use. May be called from any thread.
     virtual void use_threads(int threads) = 0;
-
-    /// The rules that the flights keep.
-    [[nodiscard]] virtual const FlightRules& rules() const noexcept = 0;
 };
+using EdgeFlights = EdgeFlightsOf<Plane>;
 
 }  // namespace downwash::planning

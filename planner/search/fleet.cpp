@@ -2,7 +2,8 @@
 
 namespace downwash::planning {
 
-const FlightLeg* FleetJob::rejected_leg() const noexcept {
+template <class Family>
+auto FleetJobOf<Family>::rejected_leg() const noexcept -> const FlightLeg* {
     for (const FlightJob& job : jobs) {
         if (const FlightLeg* leg = job.rejected_leg()) {
             return leg;
@@ -11,7 +12,8 @@ const FlightLeg* FleetJob::rejected_leg() const noexcept {
     return nullptr;
 }
 
-Fleet FleetJob::fleet_after(std::size_t leg) const {
+template <class Family>
+auto FleetJobOf<Family>::fleet_after(std::size_t leg) const -> Fleet {
     Fleet fleet;
     fleet.reserve(jobs.size());
     for (const FlightJob& job : jobs) {
@@ -19,5 +21,8 @@ Fleet FleetJob::fleet_after(std::size_t leg) const {
     }
     return fleet;
 }
+
+template struct FleetJobOf<Plane>;
+template struct FleetJobOf<Space>;
 
 }  // namespace downwash::planning

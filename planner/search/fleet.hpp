@@ -3,15 +3,23 @@
 #include <cstddef>
 #include <vector>
 
+#include "downwash/search/family.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 
 namespace downwash::planning {
 
 /// The states of the one vehicle in the worlds of a search. The nominal world, where it belongs to them, is the first.
-using Fleet = std::vector<FlightState>;
+template <class Family>
+using FleetOf = std::vector<typename Family::FlightState>;
+using Fleet = FleetOf<Plane>;
 
 /// The same legs to be flown in every world.
-struct FleetJob {
+template <class Family>
+struct FleetJobOf {
+    using FlightJob = typename Family::FlightJob;
+    using FlightLeg = typename Family::FlightLeg;
+    using Fleet = FleetOf<Family>;
+
     std::vector<FlightJob> jobs;   ///< one in each world
     bool is_hover_judged = false;  ///< the last leg is a hover that a GoalRegion judges, not the rules of the flight
 
@@ -25,18 +33,29 @@ struct FleetJob {
     /// The states at the end of the last leg. @pre is_accepted()
     [[nodiscard]] Fleet end() const { return fleet_after(legs().size() - 1); }
 };
+using FleetJob = FleetJobOf<Plane>;
 
 /// A world in which a plan failed although it passed in all worlds of the search, and the vehicle's state at the
 /// search's start there.
-struct Counterexample {
+template <class Family>
+struct CounterexampleOf {
+    using FlightState = typename Family::FlightState;
+    using FlownWorld = typename Family::FlownWorld;
+
     FlownWorld world;
     FlightState start;
 };
+using Counterexample = CounterexampleOf<Plane>;
 
 /// The worlds of a search without the nominal one, and the states at its start. Empty for a search in one world.
-struct SearchWorlds {
+template <class Family>
+struct SearchWorldsOf {
+    using FlownWorld = typename Family::FlownWorld;
+    using Fleet = FleetOf<Family>;
+
     std::vector<FlownWorld> worlds;
     Fleet start;  ///< state at the start in each of these worlds
 };
+using SearchWorlds = SearchWorldsOf<Plane>;
 
 }  // namespace downwash::planning

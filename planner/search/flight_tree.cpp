@@ -8,9 +8,10 @@ namespace downwash::planning {
 namespace {
 
 /// The largest difference of a coordinate, angles taken as they stand [m or rad].
+template <class Configuration>
 double max_difference(const Configuration& a, const Configuration& b) {
     double largest = 0;
-    for (std::size_t axis = 0; axis < max_axes; ++axis) {
+    for (std::size_t axis = 0; axis < a.coordinate.size(); ++axis) {
         largest = std::max(largest, std::abs(a[axis] - b[axis]));
     }
     return largest;
@@ -18,13 +19,8 @@ double max_difference(const Configuration& a, const Configuration& b) {
 
 }  // namespace
 
-FlightPoint moment_at(const FlightNode& node) {
-    return {node.fleet.front(), {node.fleet.begin() + 1, node.fleet.end()},
-            node.reference,     node.configuration,
-            node.cost,          node.ticks_from_start};
-}
-
-FlightTree::FlightTree(const FlightPoint& start, PlannedFlights& flights)
+template <class Family>
+FlightTreeOf<Family>::FlightTreeOf(const FlightPoint& start, PlannedFlights& flights)
     : flights_(flights), space_(flights.task().space), nearest_(space_) {
     FlightNode root;
     root.configuration = configuration_of(start.reference);
@@ -34,7 +30,8 @@ FlightTree::FlightTree(const FlightPoint& start, PlannedFlights& flights)
     nearest_.add(moving_.back()->configuration);
 }
 
-std::vector<FlightNode*> FlightTree::nearest(const Configuration& to, std::size_t count) const {
+template <class Family>
+auto FlightTreeOf<Family>::nearest(const Configuration& to, std::size_t count) const -> std::vector<FlightNode*> {
     std::vector<FlightNode*> nodes;
     for (const std::size_t number : nearest_.nearest(to, count)) {
         nodes.push_back(moving_[number]);
@@ -42,19 +39,25 @@ std::vector<FlightNode*> FlightTree::nearest(const Configuration& to, std::size_
     return nodes;
 }
 
-double FlightTree::estimated_cost(const FlightNode& from, const Configuration& to) const {
+template <class Family>
+double FlightTreeOf<Family>::estimated_cost(const FlightNode& from, const Configuration& to) const {
     return flights_.objective().estimate(from.configuration, to);
 }
 
-double FlightTree::min_cost_to_goal(const Configuration& from) const {
+template <class Family>
+double FlightTreeOf<Family>::min_cost_to_goal(const Configuration& from) const {
     return flights_.objective().min_to_goal(from);
 }
 
-ReferenceSegment FlightTree::segment_to(const FlightNode& from, const ReferencePoint& to, std::int64_t ticks) const {
-    return {from.reference, to, ticks, flights_.task().model.tick().tick_s};
+template <class Family>
+auto FlightTreeOf<Family>::segment_to(const FlightNode& from, const ReferencePoint& to, std::int64_t ticks) const
+    -> ReferenceSegment {
+    return {from.reference, to, ticks, flights_.task().tick_s};
 }
 
-std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge, FlightStatistics& counts) const {
+template <class Family>
+auto FlightTreeOf<Family>::promising_segment(const Edge& edge, FlightStatistics& counts) const
+    -> std::optional<ReferenceSegment> {
     const ReferenceSegment segment = flights_.fastest_segment(edge.from->reference, edge.to);
     if (segment.ticks() > max_plan_ticks - edge.from->ticks_from_start) {
         PlannedFlights::count_rejection("too_long", counts);
@@ -68,7 +71,8 @@ std::optional<ReferenceSegment> FlightTree::promising_segment(const Edge& edge, 
     return flights_.is_worth_flying(segment, counts) ? std::optional(segment) : std::nullopt;
 }
 
-std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const FleetJob& job) const {
+template <class Family>
+auto FlightTreeOf<Family>::flown(const FlightNode& from, const FleetJob& job) const -> std::optional<Flown> {
     if (!job.is_accepted()) {
         return std::nullopt;
     }
@@ -77,7 +81,8 @@ std::optional<FlightTree::Flown> FlightTree::flown(const FlightNode& from, const
                  flights_.cost_after(from.cost, from.fleet, job, job.legs().size() - 1)};
 }
 
-std::vector<std::optional<FlightTree::Flown>> FlightTree::flown(std::span<const Edge> edges) {
+template <class Family>
+auto FlightTreeOf<Family>::flown(std::span<const Edge> edges) -> std::vector<std::optional<Flown>> {
     std::vector<FleetJob> jobs;
     std::vector<std::size_t> edge_of;
     FlightStatistics counts;
@@ -97,7 +102,8 @@ std::vector<std::optional<FlightTree::Flown>> FlightTree::flown(std::span<const 
 }
 
 /// A chain of edges as the jobs that a pool flies.
-class FlightTree::JobChain final : public FlightChain {
+template <class Family>
+class FlightTreeOf<Family>::JobChain final : public Family::FlightChain {
  public:
     JobChain(const FlightTree& tree, EdgeChain& edges) : tree_(tree), edges_(edges) {}
 
@@ -136,7 +142,8 @@ class FlightTree::JobChain final : public FlightChain {
     FleetJob job_;
 };
 
-void FlightTree::fly(std::span<EdgeChain* const> chains) {
+template <class Family>
+void FlightTreeOf<Family>::fly(std::span<EdgeChain* const> chains) {
     if (!flights_.can_fly_chains() || !flights_.is_one_world()) {
         fly_in_rounds(chains);
         return;
@@ -164,7 +171,8 @@ void FlightTree::fly(std::span<EdgeChain* const> chains) {
 }
 
 /// In many worlds it is known after every round which of them reject most, and are to be flown in first.
-void FlightTree::fly_in_rounds(std::span<EdgeChain* const> chains) {
+template <class Family>
+void FlightTreeOf<Family>::fly_in_rounds(std::span<EdgeChain* const> chains) {
     for (;;) {
         std::vector<Edge> edges;
         std::vector<EdgeChain*> owners;
@@ -184,7 +192,8 @@ void FlightTree::fly_in_rounds(std::span<EdgeChain* const> chains) {
     }
 }
 
-FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {
+template <class Family>
+auto FlightTreeOf<Family>::add(FlightNode& parent, const Flown& flight) -> FlightNode& {
     FlightNode& node = attach(parent, flight);
     moving_.push_back(&node);
     nearest_.add(node.configuration);
@@ -192,7 +201,8 @@ FlightNode& FlightTree::add(FlightNode& parent, const Flown& flight) {
 }
 
 /// Makes a node at the end of an edge; nothing starts from it yet.
-FlightNode& FlightTree::attach(FlightNode& parent, const Flown& flight) {
+template <class Family>
+auto FlightTreeOf<Family>::attach(FlightNode& parent, const Flown& flight) -> FlightNode& {
     FlightNode& node = nodes_.emplace_back();
     node.configuration = configuration_of(flight.to);
     node.reference = flight.to;
@@ -205,7 +215,8 @@ FlightNode& FlightTree::attach(FlightNode& parent, const Flown& flight) {
     return node;
 }
 
-void FlightTree::add_holds(std::span<FlightNode* const> nodes) {
+template <class Family>
+void FlightTreeOf<Family>::add_holds(std::span<FlightNode* const> nodes) {
     std::vector<FleetJob> jobs;
     std::vector<FlightNode*> held;
     for (FlightNode* node : nodes) {
@@ -224,16 +235,19 @@ void FlightTree::add_holds(std::span<FlightNode* const> nodes) {
     }
 }
 
-FleetJob FlightTree::hold_job(const FlightNode& at) const {
+template <class Family>
+auto FlightTreeOf<Family>::hold_job(const FlightNode& at) const -> FleetJob {
     return flights_.job(at.fleet, at.ticks_from_start, {flights_.hold_leg(at.reference)}, flights_.judged_ticks());
 }
 
-FleetJob FlightTree::edge_job(const FlightNode& from, const FlightNode& to) const {
+template <class Family>
+auto FlightTreeOf<Family>::edge_job(const FlightNode& from, const FlightNode& to) const -> FleetJob {
     return to.is_hold ? hold_job(from)
                       : flights_.job(from.fleet, from.ticks_from_start, {{segment_to(from, to.reference, to.ticks)}});
 }
 
-std::size_t FlightTree::rewire(std::span<const Rewiring> rewirings) {
+template <class Family>
+std::size_t FlightTreeOf<Family>::rewire(std::span<const Rewiring> rewirings) {
     std::vector<Rewiring> open;
     std::vector<Edge> edges;
     for (const Rewiring& r : rewirings) {
@@ -261,7 +275,8 @@ std::size_t FlightTree::rewire(std::span<const Rewiring> rewirings) {
     return done;
 }
 
-bool FlightTree::move_below(FlightNode& node, FlightNode& parent, const Flown& flight) {
+template <class Family>
+bool FlightTreeOf<Family>::move_below(FlightNode& node, FlightNode& parent, const Flown& flight) {
     for (const FlightNode* n = &parent; n != nullptr; n = n->parent) {
         if (n == &node) {
             return false;  // an earlier rewiring has put the parent below the node
@@ -324,7 +339,8 @@ bool FlightTree::move_below(FlightNode& node, FlightNode& parent, const Flown& f
     return true;
 }
 
-std::vector<FlightPoint> FlightTree::moments_to(const FlightNode& node) {
+template <class Family>
+auto FlightTreeOf<Family>::moments_to(const FlightNode& node) -> std::vector<FlightPoint> {
     std::vector<FlightPoint> moments;
     for (const FlightNode* n = &node; n != nullptr; n = n->parent) {
         moments.push_back(moment_at(*n));
@@ -333,12 +349,16 @@ std::vector<FlightPoint> FlightTree::moments_to(const FlightNode& node) {
     return moments;
 }
 
-Plan FlightTree::plan_to(const FlightNode& node) const {
+template <class Family>
+auto FlightTreeOf<Family>::plan_to(const FlightNode& node) const -> Plan {
     std::vector<FlightPoint> moments = moments_to(node);
     if (!node.is_hold) {
         moments.push_back(moments.back());  // a plan leaves out what comes after its last knot
     }
-    return plan_through(moments, flights_.task().model.tick().tick_s);
+    return plan_through(moments, flights_.task().blank_plan);
 }
+
+template class FlightTreeOf<Plane>;
+template class FlightTreeOf<Space>;
 
 }  // namespace downwash::planning

@@ -16,28 +16,56 @@
 namespace downwash::planning {
 
 /// A vehicle that arrived somewhere, and how.
-struct FlightNode {
+template <class Family>
+struct FlightNodeOf {
+    using Configuration = typename Family::Configuration;
+    using ReferencePoint = typename Family::ReferencePoint;
+    using Fleet = FleetOf<Family>;
+
     Configuration configuration;  ///< the reference point at which the edge to this node ends
     ReferencePoint reference;     ///< that point with its derivatives; only the root and passages may move
     Fleet fleet;                  ///< the whole vehicle there in every world, integrators included
     double cost = 0;              ///< cost of the flight from the start, in the objective's unit
-    FlightNode* parent = nullptr;
+    FlightNodeOf* parent = nullptr;
     std::int64_t ticks = 0;  ///< length of the edge from the parent
     std::int64_t ticks_from_start = 0;
-    std::vector<FlightNode*> children;
+    std::vector<FlightNodeOf*> children;
     bool is_hold = false;       ///< the edge is the hold at the goal; such a node has no children
     bool is_discarded = false;  ///< a hold whose direct flight failed
 };
+using FlightNode = FlightNodeOf<Plane>;
 
 /// The moment at which a vehicle is at a node.
-[[nodiscard]] FlightPoint moment_at(const FlightNode& node);
+template <class Family>
+[[nodiscard]] FlightPointOf<Family> moment_at(const FlightNodeOf<Family>& node) {
+    return {node.fleet.front(), {node.fleet.begin() + 1, node.fleet.end()},
+            node.reference,     node.configuration,
+            node.cost,          node.ticks_from_start};
+}
 
 /// The tree of closed-loop flights: every edge is a flight from the parent's whole vehicle state along a reference
 /// segment that starts at the parent's reference point. Holds at the goal are edges as well. Knows no search strategy.
-class FlightTree {
+template <class Family>
+class FlightTreeOf {
  public:
+    using FlightTree = FlightTreeOf;
+    using Configuration = typename Family::Configuration;
+    using ReferencePoint = typename Family::ReferencePoint;
+    using ReferenceSegment = typename Family::ReferenceSegment;
+    using Plan = typename Family::Plan;
+    using FlightJob = typename Family::FlightJob;
+    using FlightChain = typename Family::FlightChain;
+    using SearchSpace = typename Family::SearchSpace;
+    using Fleet = FleetOf<Family>;
+    using FleetJob = FleetJobOf<Family>;
+    using FlightPoint = FlightPointOf<Family>;
+    using PlannedFlights = PlannedFlightsOf<Family>;
+    using FlightNode = FlightNodeOf<Family>;
+    using NearestPlaces = NearestPlacesOf<Family>;
+    using FlightStatistics = FlightStatisticsOf<Family>;
+
     /// @param start the moment that becomes the root   @param flights must outlive it
-    FlightTree(const FlightPoint& start, PlannedFlights& flights);
+    FlightTreeOf(const FlightPoint& start, PlannedFlights& flights);
 
     [[nodiscard]] FlightNode& root() noexcept { return nodes_.front(); }
     [[nodiscard]] std::size_t size() const noexcept { return moving_.size(); }
@@ -128,5 +156,6 @@ class FlightTree {
     NearestPlaces nearest_;
     std::vector<FlightNode*> holds_;
 };
+using FlightTree = FlightTreeOf<Plane>;
 
 }  // namespace downwash::planning

@@ -6,64 +6,38 @@
 #include <ompl/util/Console.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
-#include "downwash/base/parallel.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/search/flight_space.hpp"
 
 namespace downwash::planning {
-namespace {
-
-/// Lets flights ask a termination condition as long as solve() goes on.
-class ConditionScope {
- public:
-    using Condition = ompl::base::PlannerTerminationCondition;
-    ConditionScope(const Condition*& asked, const Condition& condition) : asked_(asked) { asked_ = &condition; }
-    ~ConditionScope() { asked_ = nullptr; }
-    ConditionScope(const ConditionScope&) = delete;
-    ConditionScope& operator=(const ConditionScope&) = delete;
-
- private:
-    const Condition*& asked_;
-};
-
-}  // namespace
-
 FlightTreePlanner::FlightTreePlanner(const ompl::base::SpaceInformationPtr& information, const SearchTask& task,
                                      int threads)
-    : ompl::base::Planner(information, "FlightTree"),
-      task_(task),
-      space_(task.space),
-      parameters_(task.problem.planner),
-      threads_(std::max(1, threads)),
-      flights_(
-          task, [this] { return is_over(); }, threads_),
-      refined_flights_(
-          task, [this] { return is_over(); }, threads_),
-      refiner_random_(task.problem.planner.seed) {
+    : ompl::base::Planner(information, "FlightTree"), task_(task), search_(task, threads) {
     specs_.recognizedGoal = ompl::base::GOAL_SAMPLEABLE_REGION;
     specs_.approximateSolutions = true;
     specs_.optimizingPaths = true;
-    specs_.multithreaded = threads_ > 1;
+    specs_.multithreaded = threads > 1;
     specs_.canReportIntermediateSolutions = true;
     for (const FlightTreeParameters::Member& member : FlightTreeParameters::members()) {
         params_.declareParam<double>(
-            std::string(member.name), [this, value = member.value](double given) { parameters_.*value = given; },
-            [this, value = member.value] { return parameters_.*value; });
+            std::string(member.name),
+            [this, value = member.value](double given) { search_.parameters().*value = given; },
+            [this, value = member.value] { return search_.parameters().*value; });
     }
-    addPlannerProgressProperty("iterations INTEGER", [this] { return std::to_string(iterations_); });
-    addPlannerProgressProperty("best cost REAL", [this] { return best_ ? to_text(best_->cost) : std::string("inf"); });
+    addPlannerProgressProperty("iterations INTEGER", [this] { return std::to_string(search_.iterations()); });
+    addPlannerProgressProperty("best cost REAL",
+                               [this] { return search_.best() ? to_text(search_.best()->cost) : std::string("inf"); });
 }
 
 void FlightTreePlanner::setup() {
     Planner::setup();
     for (const FlightTreeParameters::Member& member : FlightTreeParameters::members()) {
         const AlgorithmParameter& known = FlightTreeParameters::info(member.name);
-        const double value = parameters_.*member.value;
+        const double value = search_.parameters().*member.value;
         if (!(value >= known.low && value <= known.high)) {
             setup_ = false;
             throw ompl::Exception(name_, std::string(member.name) + " is " + to_text(value) +
@@ -75,17 +49,7 @@ void FlightTreePlanner::setup() {
 
 void FlightTreePlanner::clear() {
     Planner::clear();
-    flights_.forget();
-    refined_flights_.forget();
-    refiner_.reset();
-    growth_.reset();
-    iterations_ = 0;
-    best_.reset();
-    handed_over_.clear();
-    handed_over_cost_ = HUGE_VAL;
-    idle_rounds_ = 0;
-    failures_in_a_row_ = 0;
-    tree_left_ = refiner_left_ = 0;
+    search_.clear();
 }
 
 /// Takes on the goal of the problem definition.
@@ -97,8 +61,7 @@ bool FlightTreePlanner::adopt_goal() {
         return false;
     }
     users_goal_ = flight_goal == nullptr ? std::make_unique<OmplGoal>(si_, task_, *goal) : nullptr;
-    flights_.lead_to(users_goal_.get());
-    refined_flights_.lead_to(users_goal_.get());
+    search_.lead_to(users_goal_.get());
     return true;
 }
 
@@ -111,39 +74,16 @@ bool FlightTreePlanner::adopt_objective() {
         return false;
     }
     users_objective_ = is_users ? std::make_unique<OmplObjective>(si_, task_, *objective, *pdef_->getGoal()) : nullptr;
-    flights_.pay_by(users_objective_.get());
-    refined_flights_.pay_by(users_objective_.get());
+    search_.pay_by(users_objective_.get());
     constexpr unsigned int tries = 100;
     sampler_ = std::make_unique<OmplSampler>(si_, task_,
                                              is_users ? objective->allocInformedStateSampler(pdef_, tries) : nullptr);
     return true;
 }
 
-void FlightTreePlanner::begin(const FlightPoint& start) {
-    Random& random = random_of(*si_->getStateSpace());
-    random = Random(task_.problem.planner.seed);
-    refiner_random_ = random.branch();
-    growth_.emplace(start, space_, parameters_, flights_, random, *sampler_);
-    refiner_.emplace(start, refined_flights_, refiner_random_);
-    growth_->try_first(known_places_);
-    if (known_plan_ && known_plan_->reference.size() > 1) {
-        refiner_->work_on({*known_plan_});
-        if (const FlownPlan* const known = refiner_->best()) {
-            growth_->know_plan(refiner_->moments_of(*known));
-        }
-    }
-}
-
-FlightStatistics FlightTreePlanner::statistics() const {
-    FlightStatistics all = flights_.statistics();
-    all += refined_flights_.statistics();
-    return all;
-}
-
 ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerminationCondition& terminated) {
     checkValidity();
-    const ConditionScope scope(terminated_, terminated);
-    if (!growth_) {
+    if (!search_.has_begun()) {
         if (!adopt_goal()) {
             return ompl::base::PlannerStatus::UNRECOGNIZED_GOAL_TYPE;
         }
@@ -155,31 +95,13 @@ ompl::base::PlannerStatus FlightTreePlanner::solve(const ompl::base::PlannerTerm
         if (!adopt_objective()) {
             return ompl::base::PlannerStatus::ABORT;
         }
-        begin(point_of(start));
+        search_.begin(point_of(start), random_of(*si_->getStateSpace()), *sampler_);
     }
-    const auto is_done = [this] {
-        return best_ && (stops_at_first_plan_ ||
-                         (users_objective_ != nullptr &&
-                          pdef_->getOptimizationObjective()->isSatisfied(ompl::base::Cost(best_->cost))));
-    };
-    while (!terminated && !is_used_up() && !is_done()) {
-        if (growth_->has_plan() || refined_flights_.has_counterexamples()) {
-            go_on_side_by_side(terminated);
-        } else {
-            grow();
-            tree_left_ = 0;  // the rounds begin with the first plan
-        }
-        hand_to_refiner();
-        if (observer_) {
-            observer_();
-        }
-        if (stops_at_first_plan_) {
-            settle_best(terminated);  // at once, and whatever else may have been found beside it
-        }
-    }
-    if (!is_done()) {
-        settle_best(terminated);
-    }
+    search_.go_on([&terminated] { return static_cast<bool>(terminated); },
+                  [this](double cost) {
+                      return users_objective_ != nullptr &&
+                             pdef_->getOptimizationObjective()->isSatisfied(ompl::base::Cost(cost));
+                  });
     return report_solution();
 }
 
@@ -195,214 +117,32 @@ ompl::base::PathPtr FlightTreePlanner::make_path(const std::vector<FlightPoint>&
 
 /// Adds what there is to the problem definition.
 ompl::base::PlannerStatus FlightTreePlanner::report_solution() {
-    const bool is_exact = best_.has_value();
-    const FlightNode& nearest = growth_->nearest_to_goal();
+    const bool is_exact = search_.best().has_value();
+    const FlightNode& nearest = search_.growth().nearest_to_goal();
     if (!is_exact && nearest.parent == nullptr) {
         return ompl::base::PlannerStatus::TIMEOUT;
     }
-    ompl::base::PlannerSolution solution(make_path(is_exact ? best_->moments : FlightTree::moments_to(nearest)));
+    ompl::base::PlannerSolution solution(
+        make_path(is_exact ? search_.best()->moments : FlightTree::moments_to(nearest)));
     solution.setPlannerName(getName());
     if (is_exact) {
         const auto objective =
             pdef_->hasOptimizationObjective() ? pdef_->getOptimizationObjective() : make_flight_objective(si_);
-        const ompl::base::Cost cost(best_->cost);
+        const ompl::base::Cost cost(search_.best()->cost);
         solution.setOptimized(objective, cost, objective->isSatisfied(cost));
     } else {
-        solution.setApproximate(growth_->nearest_distance_m());
+        solution.setApproximate(search_.growth().nearest_distance_m());
     }
     pdef_->addSolutionPath(solution);
     return is_exact ? ompl::base::PlannerStatus::EXACT_SOLUTION : ompl::base::PlannerStatus::APPROXIMATE_SOLUTION;
 }
 
-/// How far a plan goes back in its lineage: the more plans in a row failed their certificates, the farther.
-std::size_t FlightTreePlanner::steps_back_after(int failures_in_a_row) {
-    constexpr int patience = 2, most_doublings = 6;
-    return std::size_t{1} << std::clamp(failures_in_a_row - patience, 0, most_doublings);
-}
-
-/// The work that tree and refiner do in a round beside a plan that is flown directly.
-double FlightTreePlanner::work_beside(const Candidate& candidate) const {
-    const double most = std::max(parameters_.round_work, parameters_.max_round_work);
-    if (task_.worlds != nullptr) {
-        return most;  // a certificate takes longer than any execution
-    }
-    const auto ticks = static_cast<double>(candidate.moments.back().ticks);
-    return std::clamp(parameters_.execution_tick_work * ticks, parameters_.round_work, most);
-}
-
-/// A round. Variants without direct flights have rounds of the same length, so that all search the same way.
-void FlightTreePlanner::go_on_side_by_side(const ompl::base::PlannerTerminationCondition& terminated) {
-    std::optional<Proposal> proposed = stops_at_first_plan_ ? std::nullopt : proposal(parameters_.worthwhile_gain);
-    double work = proposed ? work_beside(proposed->candidate) : parameters_.round_work;
-    if (max_iterations_) {  // the refiner does not go on for long when the tree is at its end
-        work = std::min(work, parameters_.usual_sample_work * static_cast<double>(*max_iterations_ - iterations_));
-    }
-    tree_left_ = std::min(tree_left_, 0.0) + work;
-    refiner_left_ = std::min(refiner_left_, 0.0) + work;
-    // Tree and refiner share the threads, and whoever is done leaves all to the other, for the batches of the piece
-    // that is being worked on too.
-    const int refiner_threads = std::max(1, threads_ / 2);
-    refined_flights_.use_threads(refiner_threads);
-    flights_.use_threads(std::max(1, threads_ - refiner_threads));
-    SteppedTask tasks[] = {
-        [&] {
-            if (proposed) {
-                execute(*proposed);
-            }
-            return false;
-        },
-        [&] {
-            const bool goes_on = !terminated && !is_used_up() && tree_left_ > 0;
-            if (goes_on) {
-                grow();
-            } else {
-                refined_flights_.use_threads(threads_);
-            }
-            return goes_on;
-        },
-        [&] {
-            const bool has_work = refiner_->best() != nullptr || !handed_over_.empty();
-            const bool goes_on = !terminated && has_work && refiner_left_ > 0;
-            if (goes_on) {
-                refine();
-            } else {
-                flights_.use_threads(threads_);
-            }
-            return goes_on;
-        },
-    };
-    run_side_by_side(tasks, std::min(threads_, 3));
-    if (proposed) {
-        settle(std::move(*proposed));
-    }
-}
-
-void FlightTreePlanner::grow() {
-    const std::uint64_t ticks_before = flights_.statistics().ticks;
-    const std::uint64_t samples =
-        growth_->grow(max_iterations_ ? std::optional(*max_iterations_ - iterations_) : std::nullopt);
-    iterations_ += samples;
-    tree_left_ -= static_cast<double>(flights_.statistics().ticks - ticks_before) +
-                  parameters_.sample_work * static_cast<double>(samples);
-}
-
-void FlightTreePlanner::refine() {
-    const std::uint64_t ticks_before = refined_flights_.statistics().ticks;
-    if (handed_over_.empty()) {
-        refiner_->improve();
-    }
-    for (HandedOver& handed_over : std::exchange(handed_over_, {})) {
-        refiner_->work_on(std::move(handed_over.lineage), handed_over.steps_back);
-    }
-    refiner_left_ -= static_cast<double>(refined_flights_.statistics().ticks - ticks_before) + parameters_.refine_work;
-}
-
-/// The refiner gets the tree's best plan whenever that became better, and any other one when it has time.
-void FlightTreePlanner::hand_to_refiner() {
-    const bool is_idle = refiner_->best() == nullptr && handed_over_.empty();
-    idle_rounds_ = is_idle ? idle_rounds_ + 1 : 0;
-    const bool has_counterexamples = refined_flights_.has_counterexamples();
-    const FlightNode* const best =
-        is_idle && has_counterexamples ? growth_->hold_by_rank(idle_rounds_ - 1) : growth_->best_hold();
-    if (best == nullptr) {
-        return;
-    }
-    if (is_idle || best->cost < (1 - parameters_.worthwhile_gain) * handed_over_cost_) {
-        handed_over_cost_ = best->cost;
-        handed_over_.push_back({{growth_->tree().plan_to(*best)}});
-    } else if (refiner_->best() != nullptr && refiner_->wants_plan()) {
-        if (const FlightNode* hold = growth_->hold_away_from(refiner_->best()->points)) {
-            handed_over_.push_back({{growth_->tree().plan_to(*hold)}});
-        }
-    }
-}
-
-/// The cheapest plan, of tree and refiner, if it is cheaper than the best plan by this share.
-std::optional<FlightTreePlanner::Proposal> FlightTreePlanner::proposal(double min_gain) const {
-    const double to_beat = best_ ? (1 - min_gain) * best_->cost : HUGE_VAL;
-    const FlownPlan* const refined = refiner_->best();
-    // The tree does not fly in counterexamples; what it finds has to pass the refiner first.
-    FlightNode* const hold = refined_flights_.has_counterexamples() ? nullptr : growth_->best_hold();
-    if (refined != nullptr && refined->cost < to_beat && (hold == nullptr || refined->cost <= hold->cost)) {
-        return Proposal{{refiner_->moments_of(*refined), refined->cost, iterations_}, refiner_->best_number()};
-    }
-    if (hold != nullptr && hold->cost < to_beat) {
-        return Proposal{{FlightTree::moments_to(*hold), hold->cost, iterations_}, 0, hold};
-    }
-    return std::nullopt;
-}
-
-void FlightTreePlanner::execute(Proposal& proposal) const {
-    proposal.is_good = !hooks_.survives_execution || hooks_.survives_execution(proposal.candidate);
-    flights_.verify(proposal.candidate.moments);
-}
-
-/// What becomes of a plan that was executed.
-void FlightTreePlanner::settle(Proposal proposal) {
-    if (proposal.is_good) {
-        if (hooks_.accept) {
-            hooks_.accept(proposal.candidate);
-        }
-        best_ = std::move(proposal.candidate);
-        failures_in_a_row_ = 0;
-        growth_->know_plan(best_->moments);
-        return;
-    }
-    flights_.count_rejection("direct_flight");
-    if (std::vector<Counterexample> found; hooks_.counterexamples && !(found = hooks_.counterexamples()).empty()) {
-        learn_from(proposal, found);
-    } else if (proposal.hold == nullptr) {
-        refiner_->drop(proposal.refined);
-        if (best_) {
-            handed_over_.push_back({{plan_through(best_->moments, task_.model.tick().tick_s)}});
-        }
-    }
-    if (proposal.hold == nullptr) {
-        return;
-    }
-    if (proposal.hold->cost == proposal.candidate.cost) {
-        growth_->discard(*proposal.hold);  // unless it was rewired meanwhile: a new flight, a new chance
-    }
-}
-
-/// From now on the refiner flies in these worlds, too, and takes its plans on anew.
-void FlightTreePlanner::learn_from(const Proposal& failed, const std::vector<Counterexample>& counterexamples) {
-    const bool is_refiners_best =
-        failed.hold == nullptr && refiner_->best() != nullptr && refiner_->best_number() == failed.refined;
-    refined_flights_.join(counterexamples);
-    ++failures_in_a_row_;
-    bool is_best = true;
-    for (Lineage& lineage : refiner_->release()) {
-        handed_over_.push_back(
-            {std::move(lineage), is_best && is_refiners_best ? steps_back_after(failures_in_a_row_) : 0});
-        is_best = false;
-    }
-    if (!is_refiners_best) {
-        handed_over_.push_back({{plan_through(failed.candidate.moments, task_.model.tick().tick_s)}, 1});
-    }
-}
-
-/// Executes the cheapest plans one after the other until one is good. At the end of the search it gives up after
-/// max_rejected_at_end plans.
-void FlightTreePlanner::settle_best(const ompl::base::PlannerTerminationCondition& terminated) {
-    int rejected_at_end = 0;
-    while (auto best = proposal(parameters_.final_gain)) {
-        execute(*best);
-        const bool is_good = best->is_good;
-        settle(std::move(*best));
-        rejected_at_end += terminated || is_used_up() ? 1 : 0;
-        if (is_good || rejected_at_end >= static_cast<int>(parameters_.max_rejected_at_end)) {
-            return;
-        }
-    }
-}
-
 void FlightTreePlanner::getPlannerData(ompl::base::PlannerData& data) const {
     Planner::getPlannerData(data);
-    if (!growth_) {
+    if (!search_.has_begun()) {
         return;
     }
-    const FlightTree& tree = growth_->tree();
+    const FlightTree& tree = search_.growth().tree();
     std::vector<ompl::base::ScopedState<>> states;  // one per node, in the order of the tree
     std::map<const FlightNode*, std::size_t> index;
     const auto vertex_of = [&](const FlightNode* node) {

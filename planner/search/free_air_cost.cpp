@@ -5,15 +5,10 @@
 #include <functional>
 
 #include "downwash/dynamics/flight_step.hpp"
+#include "downwash/simulation/space_place.hpp"
+#include "downwash/simulation/space_statics.hpp"
 
 namespace downwash::planning {
-namespace {
-
-/// Peak over mean speed of the rest-to-rest reference: no motion, however divided, takes less beyond its way over the
-/// top speed.
-constexpr double peak_over_mean_speed = 15.0 / 8.0;
-
-}  // namespace
 
 double hover_power_w(const FlightModel& model) {
     const PlantModel& plant = model.tick().plant;
@@ -22,7 +17,21 @@ double hover_power_w(const FlightModel& model) {
     return dynamics::rotor_power(plant, thrust_n);
 }
 
-FreeAirCost::FreeAirCost(const SearchTask& task)
+double hover_power_w(const SpaceProblemModel& model) {
+    const SpaceRobot& robot = model.problem().robot;
+    std::vector<double> joints_rad = model.problem().start.joints_rad;
+    joints_rad.resize(robot.plant.links.size());
+    const double weight_n = robot.mass_kg() * standard_gravity_m_s2;
+    double power_w = 0;
+    for (const double share : thrust_shares(robot.plant, center_of_mass_m(robot, arm_pose(robot, joints_rad)))) {
+        const double thrust_n = std::max(0.0, share * weight_n);
+        power_w += robot.plant.power_coefficient_w_n1p5 * thrust_n * std::sqrt(thrust_n);
+    }
+    return power_w;
+}
+
+template <class Family>
+FreeAirCostOf<Family>::FreeAirCostOf(const SearchTask& task)
     : objective_(task.problem.planner.objective),
       counts_clearance_(objective_.weight(Objective::clearance) > 0),
       model_(task.model),
@@ -30,7 +39,8 @@ FreeAirCost::FreeAirCost(const SearchTask& task)
       limits_(task.problem.motion),
       hover_power_w_(hover_power_w(task.model)) {}
 
-double FreeAirCost::of_motion(const Configuration& from, const Configuration& to) const {
+template <>
+double FreeAirCostOf<Plane>::of_motion(const Configuration& from, const Configuration& to) const {
     const double turn = space_.turn_rad(from, to);
     double way[max_axes];
     std::transform(to.coordinate.begin(), to.coordinate.end(), from.coordinate.begin(), way, std::minus{});
@@ -39,7 +49,8 @@ double FreeAirCost::of_motion(const Configuration& from, const Configuration& to
     return objective_({{space_.distance_m(from, to)}, hover_power_w_ * duration_s, duration_s, duration_s * density});
 }
 
-double FreeAirCost::min_cost_of_motion(const Configuration& from, const Configuration& to) const {
+template <>
+double FreeAirCostOf<Plane>::min_cost_of_motion(const Configuration& from, const Configuration& to) const {
     const double turn = space_.turn_rad(from, to);
     const double duration_s = peak_over_mean_speed * std::max(space_.travel_m(from, to) / limits_.max_speed_m_s,
                                                               turn / limits_.max_arm_rate_rad_s);
@@ -47,7 +58,8 @@ double FreeAirCost::min_cost_of_motion(const Configuration& from, const Configur
     return objective_({{space_.distance_m(from, to)}, hover_power_w_ * duration_s, duration_s, 0});
 }
 
-double FreeAirCost::min_cost_to_goal(const Configuration& from) const {
+template <>
+double FreeAirCostOf<Plane>::min_cost_to_goal(const Configuration& from) const {
     double least = HUGE_VAL;
     for (const Goal& goal : alternatives(space_.goal())) {
         // What the tolerance leaves open may stay; the tip moves with the vehicle and with the arm.
@@ -65,16 +77,42 @@ double FreeAirCost::min_cost_to_goal(const Configuration& from) const {
     return least;
 }
 
-double FreeAirCost::of_hold(const Configuration& at, double hold_s) const {
+template <>
+double FreeAirCostOf<Space>::of_motion(const Configuration& from, const Configuration& to) const {
+    const double duration_s = space_.duration_s(from, to);
+    const double density = counts_clearance_ ? mean_clearance_density(from, space_.seen_from(from, to)) : 0;
+    return objective_({{space_.travel_m(from, to)}, hover_power_w_ * duration_s, duration_s, duration_s * density});
+}
+
+template <>
+double FreeAirCostOf<Space>::min_cost_of_motion(const Configuration& from, const Configuration& to) const {
+    const double duration_s = peak_over_mean_speed * space_.duration_at_limits_s(from, to);
+    return objective_({{space_.travel_m(from, to)}, hover_power_w_ * duration_s, duration_s, 0});
+}
+
+template <>
+double FreeAirCostOf<Space>::min_cost_to_goal(const Configuration& from) const {
+    double least = HUGE_VAL;
+    for (const SpaceSearchSpace::Approach& goal : space_.approaches(from)) {
+        const double all_s = peak_over_mean_speed * goal.duration_at_limits_s + goal.hold_s;
+        least = std::min(least, objective_({{goal.length_m}, hover_power_w_ * all_s, all_s, 0}));
+    }
+    return least;
+}
+
+template <class Family>
+double FreeAirCostOf<Family>::of_hold(const Configuration& at, double hold_s) const {
     const double density = counts_clearance_ ? clearance_density(at) : 0;
     return objective_({{}, hover_power_w_ * hold_s, hold_s, hold_s * density});
 }
 
-double FreeAirCost::clearance_density(const Configuration& at) const {
+template <class Family>
+double FreeAirCostOf<Family>::clearance_density(const Configuration& at) const {
     return downwash::clearance_density(model_.collisions().clearance_m(level_at(at)));
 }
 
-double FreeAirCost::mean_clearance_density(const Configuration& from, const Configuration& to) const {
+template <class Family>
+double FreeAirCostOf<Family>::mean_clearance_density(const Configuration& from, const Configuration& to) const {
     constexpr double spacing_m = 0.25;
     const int pieces = static_cast<int>(std::ceil(space_.distance_m(from, to) / spacing_m)) + 1;
     double sum = 0;
@@ -83,5 +121,8 @@ double FreeAirCost::mean_clearance_density(const Configuration& from, const Conf
     }
     return sum / pieces;
 }
+
+template class FreeAirCostOf<Plane>;
+template class FreeAirCostOf<Space>;
 
 }  // namespace downwash::planning

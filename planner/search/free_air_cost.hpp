@@ -7,13 +7,23 @@ namespace downwash::planning {
 
 /// Power of the level, hovering vehicle far from all surfaces, arm still [W].
 [[nodiscard]] double hover_power_w(const FlightModel& model);
+/// The same of a robot in space, its arm as at the start of the problem.
+[[nodiscard]] double hover_power_w(const SpaceProblemModel& model);
 
 /// What a motion costs far from all surfaces, without flying it: the cost of straight edges of OMPL's planners, and the
 /// estimate by which our tree decides what is worth flying.
-class FreeAirCost {
+template <class Family>
+class FreeAirCostOf {
  public:
+    using Configuration = typename Family::Configuration;
+    using MotionLimits = typename Family::MotionLimits;
+    using SearchSpace = typename Family::SearchSpace;
+    using Goal = typename Family::Goal;
+    using FlightModel = typename Family::FlightModel;
+    using SearchTask = SearchTaskOf<Family>;
+
     /// @param task must outlive it
-    explicit FreeAirCost(const SearchTask& task);
+    explicit FreeAirCostOf(const SearchTask& task);
 
     /// Along the rest-to-rest reference between two configurations, the arm by the shorter turn.
     [[nodiscard]] double of_motion(const Configuration& from, const Configuration& to) const;
@@ -38,5 +48,6 @@ class FreeAirCost {
     MotionLimits limits_;
     double hover_power_w_;
 };
+using FreeAirCost = FreeAirCostOf<Plane>;
 
 }  // namespace downwash::planning

@@ -9,12 +9,16 @@
 namespace downwash::planning {
 
 /// Where a search leads: the goal of its problem, or one that a user of OMPL has written.
-class GoalRegion {
+template <class Family>
+class GoalRegionOf {
  public:
-    GoalRegion() = default;
-    virtual ~GoalRegion() = default;
-    GoalRegion(const GoalRegion&) = delete;
-    GoalRegion& operator=(const GoalRegion&) = delete;
+    using Configuration = typename Family::Configuration;
+    using FlightState = typename Family::FlightState;
+
+    GoalRegionOf() = default;
+    virtual ~GoalRegionOf() = default;
+    GoalRegionOf(const GoalRegionOf&) = delete;
+    GoalRegionOf& operator=(const GoalRegionOf&) = delete;
 
     /// A configuration of the level vehicle in the region, free of collision; nothing after some failed tries.
     [[nodiscard]] virtual std::optional<Configuration> sample(Random& random) const = 0;
@@ -34,12 +38,19 @@ class GoalRegion {
     /// Whether a vehicle meets the goal now: in the region, and slow.
     [[nodiscard]] virtual bool is_met(const FlightState& vehicle) const = 0;
 };
+using GoalRegion = GoalRegionOf<Plane>;
 
 /// The goal of a problem.
-class ProblemGoal final : public GoalRegion {
+template <class Family>
+class ProblemGoalOf final : public GoalRegionOf<Family> {
  public:
+    using Configuration = typename Family::Configuration;
+    using FlightState = typename Family::FlightState;
+    using SearchSpace = typename Family::SearchSpace;
+    using SearchTask = SearchTaskOf<Family>;
+
     /// @param task must outlive it
-    explicit ProblemGoal(const SearchTask& task) : task_(task), space_(task.space) {}
+    explicit ProblemGoalOf(const SearchTask& task) : space_(task.space) {}
 
     [[nodiscard]] std::optional<Configuration> sample(Random& random) const override {
         return space_.sample_goal(random);
@@ -58,13 +69,11 @@ class ProblemGoal final : public GoalRegion {
         return space_.is_near_goal(configuration);
     }
     [[nodiscard]] bool is_of_problem() const noexcept override { return true; }
-    [[nodiscard]] bool is_met(const FlightState& vehicle) const override {
-        return meets_goal(task_.problem.goal, task_.model.tick().plant, vehicle);
-    }
+    [[nodiscard]] bool is_met(const FlightState& vehicle) const override { return space_.is_met(vehicle); }
 
  private:
-    const SearchTask& task_;
     const SearchSpace& space_;
 };
+using ProblemGoal = ProblemGoalOf<Plane>;
 
 }  // namespace downwash::planning

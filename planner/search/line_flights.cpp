@@ -17,33 +17,33 @@ FlightState following(const FlightModel& model, const ReferencePoint& reference,
     return state;
 }
 
-std::int64_t samples_along(const ReferenceSegment& segment, const SearchTask& task, double spacing_m) {
-    const ReferencePoint& a = segment.from();
-    const ReferencePoint& b = segment.to();
-    const double arm_m = task.problem.robot.arm.length_m;
-    const auto weighted = [arm_m, axes = task.space.axes()](const double* v) {
-        double sum_m = 0;
-        for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-            sum_m += (axes[axis].group == AxisGroup::translation ? 1 : arm_m) * std::abs(v[axis]);
-        }
-        return sum_m;
-    };
-    double step[max_axes];
-    std::transform(b.position, b.position + max_axes, a.position, step, std::minus{});
-    // Ends that move may lead beyond the line between them.
-    const double motion_m = weighted(step) + (weighted(a.velocity) + weighted(b.velocity)) * segment.duration_s();
-    return static_cast<std::int64_t>(std::ceil(motion_m / spacing_m)) + 1;
+AnySpaceState following(const SpaceProblemModel& model, const SpacePoint& reference, double energy_j) {
+    SpaceStart start;
+    std::copy_n(reference.position, 3, start.position_m.begin());
+    std::copy_n(reference.velocity, 3, start.velocity_m_s.begin());
+    start.yaw_rad = reference.position[space::yaw];
+    start.body_rates_rad_s[2] = reference.velocity[space::yaw];
+    const auto joints = static_cast<std::size_t>(model.problem().robot.joints());
+    start.joints_rad.assign(reference.position + space::first_joint, reference.position + space::first_joint + joints);
+    start.joint_rates_rad_s.assign(reference.velocity + space::first_joint,
+                                   reference.velocity + space::first_joint + joints);
+    AnySpaceState state = start_state(model, start);
+    state.plant.energy_j = energy_j;
+    return state;
 }
 
-LineFlights::LineFlights(const SearchTask& task, FlightRules rules)
+template <class Family>
+LineFlightsOf<Family>::LineFlightsOf(const SearchTask& task, FlightRules rules)
     : task_(task), rules_(std::move(rules)), hover_power_w_(hover_power_w(task.model)) {}
 
-SegmentFlight LineFlights::flown(const ReferenceSegment& segment, FlightState& vehicle, std::uint64_t& checked) const {
+template <class Family>
+auto LineFlightsOf<Family>::flown(const ReferenceSegment& segment, FlightState& vehicle, std::uint64_t& checked) const
+    -> SegmentFlight {
     // So densely that the margin covers what happens between two poses.
     const double spacing_m = std::min(max_unseen_motion_m(rules_.margin_m), 0.1);
     const SearchSpace& space = task_.space;
-    const double tick_s = task_.model.tick().tick_s;
-    const std::int64_t samples = std::min(samples_along(segment, task_, spacing_m), segment.ticks());
+    const double tick_s = task_.tick_s;
+    const std::int64_t samples = std::min(samples_along(segment, task_.space, spacing_m), segment.ticks());
     SegmentFlight flight;
     Configuration before = configuration_of(segment.from());
     for (std::int64_t i = 1; i <= samples; ++i) {
@@ -52,12 +52,14 @@ SegmentFlight LineFlights::flown(const ReferenceSegment& segment, FlightState& v
         const Configuration at = configuration_of(reference);
         flight.rejection = space.rejection_at(at);
         ++checked;
-        const double piece_s = static_cast<double>(ticks - flight.ticks) * tick_s;
+        [[maybe_unused]] const double piece_s = static_cast<double>(ticks - flight.ticks) * tick_s;
         flight.ticks = ticks;
-        flight.length_m += space.distance_m(before, at);
-        if (flight.rejection == Rejection::none && rules_.measures_clearance) {
-            const double clearance_m = task_.model.collisions().clearance_m(level_at(at));
-            flight.clearance_integral += piece_s * clearance_density(clearance_m);
+        if constexpr (std::is_base_of_v<FlightSums, SegmentFlight>) {
+            flight.length_m += space.distance_m(before, at);
+            if (flight.rejection == Rejection::none && rules_.measures_clearance) {
+                const double clearance_m = task_.model.collisions().clearance_m(level_at(at));
+                flight.clearance_integral += piece_s * clearance_density(clearance_m);
+            }
         }
         before = at;
         if (flight.rejection != Rejection::none || i == samples) {
@@ -69,7 +71,8 @@ SegmentFlight LineFlights::flown(const ReferenceSegment& segment, FlightState& v
     return flight;
 }
 
-std::uint64_t LineFlights::fly(std::span<FlightJob> jobs) {
+template <class Family>
+std::uint64_t LineFlightsOf<Family>::fly(std::span<FlightJob> jobs) {
     std::uint64_t checked = 0;
     for (FlightJob& job : jobs) {
         const bool is_over = rules_.is_over && rules_.is_over();
@@ -85,16 +88,15 @@ std::uint64_t LineFlights::fly(std::span<FlightJob> jobs) {
                 break;
             }
         }
-        const Goal& goal = job.goal != nullptr ? *job.goal : task_.problem.goal;
-        if (job.judged_ticks > 0 && job.rejection() == Rejection::none &&
-            !meets_goal(goal, task_.model.tick().plant, vehicle)) {
+        if (job.judged_ticks > 0 && job.rejection() == Rejection::none && !task_.space.is_met(vehicle)) {
             job.legs.back().flight.rejection = Rejection::goal_missed;
         }
     }
     return checked;
 }
 
-void LineFlights::fly(std::span<FlightChain* const> chains) {
+template <class Family>
+void LineFlightsOf<Family>::fly(std::span<FlightChain* const> chains) {
     for (FlightChain* chain : chains) {
         while (FlightJob* job = chain->next()) {
             fly(std::span(job, 1));
@@ -102,9 +104,14 @@ void LineFlights::fly(std::span<FlightChain* const> chains) {
     }
 }
 
-SegmentFlight LineFlights::fly_again(const ReferenceSegment& segment, FlightState& vehicle, const FlightWorld&) const {
+template <class Family>
+auto LineFlightsOf<Family>::fly_again(const ReferenceSegment& segment, FlightState& vehicle, const FlightWorld&) const
+    -> SegmentFlight {
     std::uint64_t checked = 0;
     return flown(segment, vehicle, checked);
 }
+
+template class LineFlightsOf<Plane>;
+template class LineFlightsOf<Space>;
 
 }  // namespace downwash::planning

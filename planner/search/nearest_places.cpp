@@ -10,7 +10,8 @@
 namespace downwash::planning {
 
 /// OMPL's tree over places.
-struct NearestPlaces::Index {
+template <class Family>
+struct NearestPlacesOf<Family>::Index {
     struct Place {
         Configuration at;
         std::size_t number;
@@ -27,18 +28,21 @@ struct NearestPlaces::Index {
     ompl::NearestNeighborsGNATNoThreadSafety<Place> neighbors;
 };
 
-NearestPlaces::NearestPlaces(const SearchSpace& space, std::size_t indexed_from)
+template <class Family>
+NearestPlacesOf<Family>::NearestPlacesOf(const SearchSpace& space, std::size_t indexed_from)
     : space_(space), indexed_from_(indexed_from) {}
 
-NearestPlaces::~NearestPlaces() = default;
+template <class Family>
+NearestPlacesOf<Family>::~NearestPlacesOf() = default;
 
-void NearestPlaces::add(const Configuration& place) {
+template <class Family>
+void NearestPlacesOf<Family>::add(const Configuration& place) {
     places_.push_back(place);
     if (index_ != nullptr) {
         index_->neighbors.add({places_.back(), places_.size() - 1});
     } else if (places_.size() >= indexed_from_) {
         index_ = std::make_unique<Index>(space_);
-        std::vector<Index::Place> all;
+        std::vector<typename Index::Place> all;
         all.reserve(places_.size());
         for (std::size_t i = 0; i < places_.size(); ++i) {
             all.push_back({places_[i], i});
@@ -47,7 +51,8 @@ void NearestPlaces::add(const Configuration& place) {
     }
 }
 
-std::vector<NearestPlaces::Found> NearestPlaces::scanned(const Configuration& to, std::size_t count) const {
+template <class Family>
+auto NearestPlacesOf<Family>::scanned(const Configuration& to, std::size_t count) const -> std::vector<Found> {
     std::vector<Found> best;  // a heap
     best.reserve(count + 1);
     double farthest = HUGE_VAL;  // squared
@@ -70,9 +75,10 @@ std::vector<NearestPlaces::Found> NearestPlaces::scanned(const Configuration& to
     return best;
 }
 
-std::vector<NearestPlaces::Found> NearestPlaces::indexed(const Configuration& to, std::size_t count) const {
-    const Index::Place place{to, places_.size()};
-    std::vector<Index::Place> near;
+template <class Family>
+auto NearestPlacesOf<Family>::indexed(const Configuration& to, std::size_t count) const -> std::vector<Found> {
+    const typename Index::Place place{to, places_.size()};
+    std::vector<typename Index::Place> near;
     index_->neighbors.nearestK(place, count, near);
     // Which of several places at the same distance it gives depends on random numbers: all that are as near follow. The
     // distance back may differ by rounding.
@@ -80,7 +86,7 @@ std::vector<NearestPlaces::Found> NearestPlaces::indexed(const Configuration& to
     index_->neighbors.nearestR(place, space_.distance_m(near.back().at, to) + rounding_m, near);
     std::vector<Found> found;
     found.reserve(near.size());
-    for (const Index::Place& each : near) {
+    for (const typename Index::Place& each : near) {
         found.emplace_back(space_.squared_distance_m2(each.at, to, HUGE_VAL), each.number);
     }
     std::sort(found.begin(), found.end());
@@ -88,7 +94,8 @@ std::vector<NearestPlaces::Found> NearestPlaces::indexed(const Configuration& to
     return found;
 }
 
-std::vector<std::size_t> NearestPlaces::nearest(const Configuration& to, std::size_t count) const {
+template <class Family>
+auto NearestPlacesOf<Family>::nearest(const Configuration& to, std::size_t count) const -> std::vector<std::size_t> {
     if (count == 0) {
         return {};
     }
@@ -98,5 +105,8 @@ std::vector<std::size_t> NearestPlaces::nearest(const Configuration& to, std::si
     }
     return numbers;
 }
+
+template class NearestPlacesOf<Plane>;
+template class NearestPlacesOf<Space>;
 
 }  // namespace downwash::planning

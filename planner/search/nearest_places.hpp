@@ -12,13 +12,17 @@ namespace downwash::planning {
 /// Places of the nodes of a tree, to be found by distance. Few of them are scanned; from `indexed_from` places
 /// on OMPL's geometric near-neighbour access tree (GNAT, Brin 1995) answers, which then is faster (bench/micro). Both
 /// give the same places in the same order.
-class NearestPlaces {
+template <class Family>
+class NearestPlacesOf {
  public:
+    using Configuration = typename Family::Configuration;
+    using SearchSpace = typename Family::SearchSpace;
+
     /// @param space must outlive it
-    explicit NearestPlaces(const SearchSpace& space, std::size_t indexed_from = default_indexed_from);
-    ~NearestPlaces();
-    NearestPlaces(const NearestPlaces&) = delete;
-    NearestPlaces& operator=(const NearestPlaces&) = delete;
+    explicit NearestPlacesOf(const SearchSpace& space, std::size_t indexed_from = default_indexed_from);
+    ~NearestPlacesOf();
+    NearestPlacesOf(const NearestPlacesOf&) = delete;
+    NearestPlacesOf& operator=(const NearestPlacesOf&) = delete;
 
     static constexpr std::size_t default_indexed_from = 1000;
 
@@ -41,5 +45,6 @@ class NearestPlaces {
     std::vector<Configuration> places_;
     std::unique_ptr<Index> index_;  ///< nothing below indexed_from places
 };
+using NearestPlaces = NearestPlacesOf<Plane>;
 
 }  // namespace downwash::planning

@@ -22,23 +22,27 @@ constexpr double shortest_agile_split_s = 0.15;  ///< ... under a limit of thrus
 
 }  // namespace
 
-PlanChanges::PlanChanges(const PlannedFlights& flights, Random& random)
+template <class Family>
+PlanChangesOf<Family>::PlanChangesOf(const PlannedFlights& flights, Random& random)
     : flights_(flights),
       space_(flights.task().space),
       random_(random),
       motion_(flights.task().problem.motion),
       tick_s_(1 / flights.task().problem.robot.controller.rate_hz) {}
 
-double PlanChanges::noise(double size) {
+template <class Family>
+double PlanChangesOf<Family>::noise(double size) {
     // A sum of uniform numbers: bell-shaped, bounded, and the same on every machine.
     return size * (random_.uniform(-1, 1) + random_.uniform(-1, 1) + random_.uniform(-1, 1)) / 3;
 }
 
-std::size_t PlanChanges::index_below(std::size_t count) {
+template <class Family>
+std::size_t PlanChangesOf<Family>::index_below(std::size_t count) {
     return static_cast<std::size_t>(random_.uniform(0, static_cast<double>(count)));
 }
 
-void PlanChanges::shift(ReferencePoint& point, double step) {
+template <class Family>
+void PlanChangesOf<Family>::shift(ReferencePoint& point, double step) {
     const double size_m = step * largest_shift_m;
     for (std::size_t i = 0; i < space_.axes().size(); ++i) {
         const SearchAxis& axis = space_.axes()[i];
@@ -48,19 +52,21 @@ void PlanChanges::shift(ReferencePoint& point, double step) {
     }
 }
 
-void PlanChanges::change_speed(ReferencePoint& point, double step) {
+template <class Family>
+void PlanChangesOf<Family>::change_speed(ReferencePoint& point, double step) {
     const double share = step * largest_speed_change;
     for (std::size_t i = 0; i < space_.axes().size(); ++i) {
         const SearchAxis& axis = space_.axes()[i];
         if (!axis.is_fixed()) {
-            point.velocity[i] += noise(share * max_rate(motion_, axis.group));
-            point.acceleration[i] += noise(share * max_acceleration(motion_, axis.group));
+            point.velocity[i] += noise(share * axis.max_rate);
+            point.acceleration[i] += noise(share * axis.max_acceleration);
         }
     }
 }
 
-std::optional<ChangedPoints> PlanChanges::draw(const Points& points, const std::vector<std::int64_t>& ticks,
-                                               double step) {
+template <class Family>
+auto PlanChangesOf<Family>::draw(const Points& points, const std::vector<std::int64_t>& ticks, double step)
+    -> std::optional<ChangedPoints> {
     const double kind = random_.uniform(0, 1);
     if (kind < moves_goal) {
         return with_goal_moved(points, step);
@@ -72,7 +78,8 @@ std::optional<ChangedPoints> PlanChanges::draw(const Points& points, const std::
     return with_corner_changed(points, kind - moves_goal - adds_corner, step);
 }
 
-std::optional<ChangedPoints> PlanChanges::with_goal_moved(Points points, double step) {
+template <class Family>
+auto PlanChangesOf<Family>::with_goal_moved(Points points, double step) -> std::optional<ChangedPoints> {
     const std::size_t last = points.size() - 1;
     const auto goal = flights_.goal().sample_near(configuration_of(points[last]), step * largest_shift_m, random_);
     if (!goal) {
@@ -82,8 +89,9 @@ std::optional<ChangedPoints> PlanChanges::with_goal_moved(Points points, double 
     return ChangedPoints{std::move(points), last - 1, last - 1};
 }
 
-std::optional<ChangedPoints> PlanChanges::with_corner_added(Points points, const std::vector<std::int64_t>& ticks,
-                                                            double step) {
+template <class Family>
+auto PlanChangesOf<Family>::with_corner_added(Points points, const std::vector<std::int64_t>& ticks, double step)
+    -> std::optional<ChangedPoints> {
     const std::size_t i = index_below(ticks.size());
     const double shortest_s = motion_.max_thrust_ratio ? shortest_agile_split_s : shortest_split_s;
     if (static_cast<double>(ticks[i]) * tick_s_ < shortest_s) {
@@ -98,7 +106,8 @@ std::optional<ChangedPoints> PlanChanges::with_corner_added(Points points, const
 }
 
 /// @param kind in [0, 1 - moves_goal - adds_corner)
-ChangedPoints PlanChanges::with_corner_changed(Points points, double kind, double step) {
+template <class Family>
+auto PlanChangesOf<Family>::with_corner_changed(Points points, double kind, double step) -> ChangedPoints {
     const std::size_t corner = 1 + index_below(points.size() - 2);
     if (kind < leaves_corner_out) {
         points.erase(points.begin() + static_cast<std::ptrdiff_t>(corner));
@@ -119,7 +128,8 @@ ChangedPoints PlanChanges::with_corner_changed(Points points, double kind, doubl
 }
 
 /// Gives a corner a speed towards where the corners beside it lead.
-void PlanChanges::fly_through(Points& points, std::size_t corner) {
+template <class Family>
+void PlanChangesOf<Family>::fly_through(Points& points, std::size_t corner) {
     const Configuration before = configuration_of(points[corner - 1]);
     const Configuration after = configuration_of(points[corner + 1]);
     const double per_metre = 1 / std::max(space_.travel_m(before, after), 1e-3);
@@ -128,10 +138,13 @@ void PlanChanges::fly_through(Points& points, std::size_t corner) {
     for (std::size_t i = 0; i < space_.axes().size(); ++i) {
         p.velocity[i] = speed_m_s * per_metre * (after[i] - before[i]);
         p.acceleration[i] = 0;
-        if (space_.axes()[i].group == AxisGroup::joint) {
-            p.velocity[i] = std::clamp(p.velocity[i], -motion_.max_arm_rate_rad_s, motion_.max_arm_rate_rad_s);
+        if (const SearchAxis& axis = space_.axes()[i]; axis.group != AxisGroup::translation) {
+            p.velocity[i] = std::clamp(p.velocity[i], -axis.max_rate, axis.max_rate);
         }
     }
 }
+
+template class PlanChangesOf<Plane>;
+template class PlanChangesOf<Space>;
 
 }  // namespace downwash::planning

@@ -9,16 +9,29 @@
 namespace downwash::planning {
 
 /// The points of a reference after a change.
-struct ChangedPoints {
+template <class Family>
+struct ChangedPointsOf {
+    using ReferencePoint = typename Family::ReferencePoint;
+
     std::vector<ReferencePoint> points;
     std::size_t first_segment, last_segment;  ///< the ones that differ, both included
 };
+using ChangedPoints = ChangedPointsOf<Plane>;
 
 /// Draws random changes of a reference's points: what a pilot might try instead.
-class PlanChanges {
+template <class Family>
+class PlanChangesOf {
  public:
+    using Configuration = typename Family::Configuration;
+    using ReferencePoint = typename Family::ReferencePoint;
+    using ReferenceSegment = typename Family::ReferenceSegment;
+    using MotionLimits = typename Family::MotionLimits;
+    using SearchSpace = typename Family::SearchSpace;
+    using PlannedFlights = PlannedFlightsOf<Family>;
+    using ChangedPoints = ChangedPointsOf<Family>;
+
     /// @param flights of the plans; they and `random` must outlive it
-    PlanChanges(const PlannedFlights& flights, Random& random);
+    PlanChangesOf(const PlannedFlights& flights, Random& random);
 
     /// One change, drawn at random; nothing when it cannot be made.
     /// @param points at least two; the first stays   @param ticks from each to the next
@@ -44,5 +57,6 @@ class PlanChanges {
     MotionLimits motion_;
     double tick_s_;
 };
+using PlanChanges = PlanChangesOf<Plane>;
 
 }  // namespace downwash::planning

@@ -36,15 +36,18 @@ constexpr double max_cost_ratio = 1.5;
 
 }  // namespace
 
-PlanRefiner::PlanRefiner(FlightPoint start, PlannedFlights& flights, Random& random)
+template <class Family>
+PlanRefinerOf<Family>::PlanRefinerOf(FlightPoint start, PlannedFlights& flights, Random& random)
     : flights_(flights), random_(random), changes_(flights, random), change_flights_(std::move(start), flights) {}
 
-void PlanRefiner::Pace::succeed() noexcept {
+template <class Family>
+void PlanRefinerOf<Family>::Pace::succeed() noexcept {
     step = std::min(1.0, 1.5 * step);
     failures = 0;
 }
 
-void PlanRefiner::Pace::fail() noexcept {
+template <class Family>
+void PlanRefinerOf<Family>::Pace::fail() noexcept {
     step = std::max(min_step, 0.9 * step);
     if (++failures >= max_failures) {
         step = 1;
@@ -52,16 +55,19 @@ void PlanRefiner::Pace::fail() noexcept {
     }
 }
 
-const FlownPlan* PlanRefiner::best() const noexcept {
+template <class Family>
+auto PlanRefinerOf<Family>::best() const noexcept -> const FlownPlan* {
     return tracks_.empty() ? nullptr : &tracks_.front().plan;
 }
 
-void PlanRefiner::drop(int number) {
+template <class Family>
+void PlanRefinerOf<Family>::drop(int number) {
     std::erase_if(tracks_, [number](const Track& track) { return track.number == number; });
 }
 
 /// The cheapest of some changed plans that fly in all worlds, of the first batch that has any.
-std::optional<FlownPlan> PlanRefiner::repaired(const ChangedPlan& plan) {
+template <class Family>
+auto PlanRefinerOf<Family>::repaired(const ChangedPlan& plan) -> std::optional<FlownPlan> {
     for (int batch = 0; batch < repair_batches; ++batch) {
         std::vector<ChangedPlan> changes;
         FlightStatistics counts;
@@ -91,7 +97,8 @@ std::optional<FlownPlan> PlanRefiner::repaired(const ChangedPlan& plan) {
     return std::nullopt;
 }
 
-ChangedPlan PlanRefiner::as_change(const Plan& plan) {
+template <class Family>
+auto PlanRefinerOf<Family>::as_change(const Plan& plan) -> ChangedPlan {
     ChangedPlan change;
     for (std::size_t i = 0; i < plan.reference.size(); ++i) {
         change.points.push_back(plan.reference[i].point);
@@ -102,7 +109,8 @@ ChangedPlan PlanRefiner::as_change(const Plan& plan) {
     return change;
 }
 
-void PlanRefiner::work_on(Lineage lineage, std::size_t steps_back) {
+template <class Family>
+void PlanRefinerOf<Family>::work_on(Lineage lineage, std::size_t steps_back) {
     if (lineage.back().reference.size() < 2) {
         return;  // the start meets the goal: there is nothing on the way
     }
@@ -126,7 +134,8 @@ void PlanRefiner::work_on(Lineage lineage, std::size_t steps_back) {
 }
 
 /// Leaves out the end of a lineage up to the last plan that nothing rejects.
-std::optional<FlownPlan> PlanRefiner::last_that_flies(Lineage& lineage) {
+template <class Family>
+auto PlanRefinerOf<Family>::last_that_flies(Lineage& lineage) -> std::optional<FlownPlan> {
     for (; !lineage.empty(); lineage.pop_back()) {
         if (std::optional<FlownPlan> flown =
                 std::move(change_flights_.flown_whole({as_change(lineage.back())}).front())) {
@@ -136,7 +145,8 @@ std::optional<FlownPlan> PlanRefiner::last_that_flies(Lineage& lineage) {
     return std::nullopt;
 }
 
-void PlanRefiner::add(FlownPlan plan, Lineage lineage) {
+template <class Family>
+void PlanRefinerOf<Family>::add(FlownPlan plan, Lineage lineage) {
     const double cost = plan.cost;
     Track track{std::move(plan), ++versions_, std::move(lineage), cost, ++taken_};
     if (tracks_.empty() || track.plan.cost < tracks_.front().plan.cost) {
@@ -150,11 +160,13 @@ void PlanRefiner::add(FlownPlan plan, Lineage lineage) {
     }
 }
 
-Plan PlanRefiner::plan_of(const FlownPlan& flown) const {
-    return plan_through(moments_of(flown), flights_.task().model.tick().tick_s);
+template <class Family>
+auto PlanRefinerOf<Family>::plan_of(const FlownPlan& flown) const -> Plan {
+    return plan_through(moments_of(flown), flights_.task().blank_plan);
 }
 
-std::vector<Lineage> PlanRefiner::release() {
+template <class Family>
+auto PlanRefinerOf<Family>::release() -> std::vector<Lineage> {
     std::vector<Lineage> lineages;
     for (Track& track : tracks_) {
         lineages.push_back(std::move(track.lineage));
@@ -166,17 +178,18 @@ std::vector<Lineage> PlanRefiner::release() {
     return lineages;
 }
 
-std::optional<ChangedPlan> PlanRefiner::changed(const std::vector<ReferencePoint>& points,
-                                                const std::vector<std::int64_t>& ticks, double step,
-                                                FlightStatistics& counts) {
+template <class Family>
+auto PlanRefinerOf<Family>::changed(const std::vector<ReferencePoint>& points, const std::vector<std::int64_t>& ticks,
+                                    double step, FlightStatistics& counts) -> std::optional<ChangedPlan> {
     auto drawn = changes_.draw(points, ticks, step);
     return drawn ? change_flights_.timed(std::move(drawn->points), ticks, drawn->first_segment, drawn->last_segment,
                                          counts)
                  : std::nullopt;
 }
 
-std::optional<ChangedPlan> PlanRefiner::moved_into_goal(const ChangedPlan& plan, double share,
-                                                        FlightStatistics& counts) const {
+template <class Family>
+auto PlanRefinerOf<Family>::moved_into_goal(const ChangedPlan& plan, double share, FlightStatistics& counts) const
+    -> std::optional<ChangedPlan> {
     const Configuration end = configuration_of(plan.points.back());
     const Configuration moved = flights_.goal().moved_into(end, share);
     if (moved == end) {
@@ -188,7 +201,8 @@ std::optional<ChangedPlan> PlanRefiner::moved_into_goal(const ChangedPlan& plan,
 }
 
 /// Draws the next batch of changes, and where several fly at once those that follow if it fails. All are flown.
-void PlanRefiner::draw_batches() {
+template <class Family>
+void PlanRefinerOf<Family>::draw_batches() {
     const std::size_t wanted = flights_.can_fly_chains() ? std::min(failures_in_a_row_ + 1, max_batches_ahead) : 1;
     const Random now = random_;
     std::vector<Pace> paces;
@@ -227,13 +241,15 @@ void PlanRefiner::draw_batches() {
 }
 
 /// Whether a batch is what would be drawn now.
-bool PlanRefiner::is_due(const Batch& batch) const {
+template <class Family>
+bool PlanRefinerOf<Family>::is_due(const Batch& batch) const {
     const Track& track = tracks_[turn_ % tracks_.size()];
     return batch.turn == turn_ && batch.tracks == tracks_.size() && batch.version == track.version &&
            batch.step == track.pace.step && batch.before == random_;
 }
 
-PlanRefiner::Batch PlanRefiner::next_batch() {
+template <class Family>
+auto PlanRefinerOf<Family>::next_batch() -> Batch {
     if (batches_.empty() || !is_due(batches_.front())) {
         batches_.clear();
         draw_batches();
@@ -245,7 +261,8 @@ PlanRefiner::Batch PlanRefiner::next_batch() {
     return batch;
 }
 
-void PlanRefiner::improve() {
+template <class Family>
+void PlanRefinerOf<Family>::improve() {
     if (tracks_.empty()) {
         return;
     }
@@ -278,7 +295,8 @@ void PlanRefiner::improve() {
     }
 }
 
-std::vector<FlightPoint> PlanRefiner::moments_of(const FlownPlan& flown) const {
+template <class Family>
+auto PlanRefinerOf<Family>::moments_of(const FlownPlan& flown) const -> std::vector<FlightPoint> {
     // Counterexamples, at the end of a fleet, are no worlds of the task.
     const SearchWorlds* const worlds = flights_.task().worlds;
     const auto others_of = [count = worlds != nullptr ? worlds->worlds.size() : 0](const Fleet& fleet) {
@@ -299,5 +317,8 @@ std::vector<FlightPoint> PlanRefiner::moments_of(const FlownPlan& flown) const {
     moments.push_back(end);
     return moments;
 }
+
+template class PlanRefinerOf<Plane>;
+template class PlanRefinerOf<Space>;
 
 }  // namespace downwash::planning

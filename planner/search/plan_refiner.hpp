@@ -15,17 +15,36 @@
 namespace downwash::planning {
 
 /// A plan, and before it those from which it came, each a little cheaper than the one before.
-using Lineage = std::vector<Plan>;
+template <class Family>
+using LineageOf = std::vector<typename Family::Plan>;
+using Lineage = LineageOf<Plane>;
 
 /// Makes plans fly like a good pilot: fewer corners, passed without a stop. Every change (a corner moved, left out, put
 /// in or flown through, another place at the goal) is flown in closed loop under all rules, hold included, and kept
 /// only when that is cheaper (what gets back to the old way for more is not flown on): an evolution strategy with
 /// success-driven step length (Rechenberg 1973), several changes side by side. Of two plans that it works on the
 /// cheaper one is the best; the other one is given a chance to overtake it before it is dropped.
-class PlanRefiner {
+template <class Family>
+class PlanRefinerOf {
  public:
+    using Configuration = typename Family::Configuration;
+    using ReferencePoint = typename Family::ReferencePoint;
+    using Plan = typename Family::Plan;
+    using Fleet = FleetOf<Family>;
+    using FleetJob = FleetJobOf<Family>;
+    using SearchWorlds = SearchWorldsOf<Family>;
+    using FlightPoint = FlightPointOf<Family>;
+    using PlannedFlights = PlannedFlightsOf<Family>;
+    using PlanChanges = PlanChangesOf<Family>;
+    using ChangeFlights = ChangeFlightsOf<Family>;
+    using ChangedPlan = ChangedPlanOf<Family>;
+    using ChangeBatch = ChangeBatchOf<Family>;
+    using FlownPlan = FlownPlanOf<Family>;
+    using Lineage = LineageOf<Family>;
+    using FlightStatistics = FlightStatisticsOf<Family>;
+
     /// @param start the moment at which all plans begin   @param flights and `random` must outlive it
-    PlanRefiner(FlightPoint start, PlannedFlights& flights, Random& random);
+    PlanRefinerOf(FlightPoint start, PlannedFlights& flights, Random& random);
 
     /// Whether there is room for another plan to work on.
     [[nodiscard]] bool wants_plan() const noexcept { return tracks_.size() < max_tracks; }
@@ -111,5 +130,6 @@ class PlanRefiner {
     std::deque<Batch> batches_;          ///< drawn ahead, the next one first
     std::size_t failures_in_a_row_ = 0;  ///< batches without a better plan, of whichever track
 };
+using PlanRefiner = PlanRefinerOf<Plane>;
 
 }  // namespace downwash::planning

@@ -8,16 +8,16 @@
 #include <stdexcept>
 #include <utility>
 
+#include "downwash/controllers/space_duration.hpp"
 #include "downwash/search/closed_loop_flights.hpp"
 #include "downwash/search/line_flights.hpp"
 #include "downwash/search/obstacle_labels.hpp"
+#include "downwash/search/space_flights.hpp"
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash::planning {
-namespace {
+namespace {}  // namespace
 
-/// The rules of planned flights. In the nominal world a flight keeps margin and bounds; in other worlds it only has to
-/// succeed, as when a plan is executed.
 FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::function<bool()> is_over) {
     FlightRules rules;
     rules.margin_m = problem.planner.safety_margin_m;
@@ -32,12 +32,54 @@ FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::f
     return rules;
 }
 
+namespace {
+
+/// The same in space, where the rules of execution are those of every flight.
+std::optional<SpacePlanningRules> space_planning_rules(const SpaceProblem& problem, bool in_nominal_world) {
+    if (!in_nominal_world) {
+        return std::nullopt;
+    }
+    SpacePlanningRules rules;
+    rules.low_m = problem.bounds.low_m;
+    rules.high_m = problem.bounds.high_m;
+    rules.max_tracking_error_m = FlightRules{}.max_tracking_error_m;
+    rules.max_saturation = problem.planner.max_saturation;
+    return rules;
+}
+
 /// Edges as the level of the task's problem has them.
-std::unique_ptr<EdgeFlights> edge_flights(const SearchTask& task, FlightRules rules, int threads) {
+std::unique_ptr<EdgeFlights> edge_flights(const SearchTask& task, bool in_nominal_world, std::function<bool()> is_over,
+                                          int threads) {
+    FlightRules rules = planning_rules(task.problem, in_nominal_world, std::move(is_over));
     if (task.flies()) {
         return std::make_unique<ClosedLoopFlights>(task, std::move(rules), threads);
     }
     return std::make_unique<LineFlights>(task, std::move(rules));
+}
+std::unique_ptr<EdgeFlightsOf<Space>> edge_flights(const SearchTaskOf<Space>& task, bool in_nominal_world,
+                                                   std::function<bool()> is_over, int threads) {
+    if (task.flies()) {
+        return std::make_unique<SpaceFlights>(task, space_planning_rules(task.problem, in_nominal_world),
+                                              std::move(is_over), threads);
+    }
+    FlightRules rules;
+    rules.margin_m = task.problem.planner.safety_margin_m;
+    rules.is_over = std::move(is_over);
+    return std::make_unique<LineFlightsOf<Space>>(task, std::move(rules));
+}
+
+/// Where the obstacles of a world see a vehicle.
+PlanarPose pose_among_obstacles(const FlightState& vehicle, const FlownWorld* world) {
+    return among_obstacles(pose_of(vehicle), world);
+}
+SpacePose pose_among_obstacles(const AnySpaceState& vehicle, const SpaceWorld* world) {
+    return among_obstacles(motion_of(vehicle), world != nullptr ? *world : SpaceWorld{});
+}
+Configuration place_of(const FlightState& vehicle) {
+    return configuration_of(vehicle.plant.q);
+}
+SpaceConfiguration place_of(const AnySpaceState& vehicle) {
+    return configuration_of(motion_of(vehicle));
 }
 
 }  // namespace
@@ -74,7 +116,8 @@ std::map<std::string, std::uint64_t> no_rejections() {
             {"bounds", 0},    {"arm_limits", 0},   {"goal_missed", 0}, {"direct_flight", 0}, {"too_long", 0}};
 }
 
-FlightStatistics& FlightStatistics::operator+=(const FlightStatistics& other) {
+template <class Family>
+FlightStatisticsOf<Family>& FlightStatisticsOf<Family>::operator+=(const FlightStatisticsOf& other) {
     edges += other.edges;
     ticks += other.ticks;
     states_checked += other.states_checked;
@@ -91,50 +134,57 @@ FlightStatistics& FlightStatistics::operator+=(const FlightStatistics& other) {
     return *this;
 }
 
-PlannedFlights::PlannedFlights(const SearchTask& task, std::function<bool()> is_over, int threads)
+template <class Family>
+PlannedFlightsOf<Family>::PlannedFlightsOf(const SearchTask& task, std::function<bool()> is_over, int threads)
     : task_(task),
       goal_(task),
       objective_(task),
       limits_(task.problem.motion),
-      tick_s_(task.model.tick().tick_s),
-      nominal_(edge_flights(task, planning_rules(task.problem, true, is_over), threads)) {
+      tick_s_(task.tick_s),
+      nominal_(edge_flights(task, true, is_over, threads)) {
     if (task.worlds != nullptr) {
-        other_worlds_ = edge_flights(task, planning_rules(task.problem, false, is_over), threads);
+        other_worlds_ = edge_flights(task, false, is_over, threads);
     }
     forget();
 }
 
-void PlannedFlights::use_threads(int threads) {
+template <class Family>
+void PlannedFlightsOf<Family>::use_threads(int threads) {
     nominal_->use_threads(threads);
     if (other_worlds_ != nullptr) {
         other_worlds_->use_threads(threads);
     }
 }
 
-void PlannedFlights::forget() {
+template <class Family>
+void PlannedFlightsOf<Family>::forget() {
     joined_.clear();
     rejected_in_.assign(worlds_of_task(), 0);
     statistics_ = {};
     statistics_.rejected = no_rejections();
 }
 
-void PlannedFlights::count_rejection(const std::string& cause, FlightStatistics& counts) {
+template <class Family>
+void PlannedFlightsOf<Family>::count_rejection(const std::string& cause, FlightStatistics& counts) {
     ++counts.rejected[cause];
     ++counts.rejections;
 }
 
-void PlannedFlights::count_rejection(Rejection rejection, FlightStatistics& counts) {
+template <class Family>
+void PlannedFlightsOf<Family>::count_rejection(Rejection rejection, FlightStatistics& counts) {
     if (rejection != Rejection::interrupted) {
         count_rejection(cause_of(rejection), counts);
     }
 }
 
-bool PlannedFlights::leads_to_goal(const ReferenceSegment& segment) const {
+template <class Family>
+bool PlannedFlightsOf<Family>::leads_to_goal(const ReferenceSegment& segment) const {
     return goal().contains(configuration_of(segment.to()));
 }
 
-void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at,
-                            const PlanarPose& pose, FlightStatistics& counts) const {
+template <class Family>
+void PlannedFlightsOf<Family>::reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at,
+                                      const Pose& pose, FlightStatistics& counts) const {
     count_rejection(rejection, counts);
     if (rejection == Rejection::collision) {
         count_collision(task_.model, pose, task_.problem.planner.safety_margin_m, counts.stopped_by);
@@ -152,17 +202,15 @@ void PlannedFlights::reject(const ReferenceSegment& segment, Rejection rejection
     }
 }
 
-bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment, FlightStatistics& counts) const {
+template <class Family>
+bool PlannedFlightsOf<Family>::is_worth_flying(const ReferenceSegment& segment, FlightStatistics& counts) const {
     constexpr double spacing_m = 0.1;
-    const std::int64_t samples = samples_along(segment, task_, spacing_m);
+    const std::int64_t samples = samples_along(segment, task_.space, spacing_m);
     const auto at = [&](std::int64_t i) { return segment.at_tick(segment.ticks() * i / samples); };
-    const auto pose_at = [&](const ReferencePoint& point) {
-        PlanarPose pose = level_at(configuration_of(point));
-        pose.pitch_rad = task_.flies() && limits_.max_thrust_ratio ? pitch_along(point) : 0;
-        return pose;
-    };
+    const bool tilts = task_.flies() && limits_.max_thrust_ratio;
+    const auto pose_at = [&](const ReferencePoint& point) { return task_.space.pose_along(point, tilts); };
     const auto rejection_at = [&](const ReferencePoint& point) {
-        return task_.space.rejection_at(configuration_of(point), pose_at(point).pitch_rad);
+        return task_.space.rejection_at(configuration_of(point), pose_at(point));
     };
     Rejection rejection = Rejection::none;
     std::int64_t stopped_at = samples;
@@ -188,7 +236,8 @@ bool PlannedFlights::is_worth_flying(const ReferenceSegment& segment, FlightStat
     return false;
 }
 
-void PlannedFlights::fly(std::span<FlightJob> jobs) {
+template <class Family>
+void PlannedFlightsOf<Family>::fly(std::span<FlightJob> jobs) {
     statistics_.states_checked += nominal_->fly(jobs);
     for (const FlightJob& job : jobs) {
         count(job, statistics_);
@@ -198,25 +247,29 @@ void PlannedFlights::fly(std::span<FlightJob> jobs) {
     }
 }
 
-void PlannedFlights::count(const FlightJob& job, FlightStatistics& counts) {
+template <class Family>
+void PlannedFlightsOf<Family>::count(const FlightJob& job, FlightStatistics& counts) {
     for (const FlightLeg& leg : job.legs) {
         counts.edges += leg.flight.ticks > 0 ? 1 : 0;
         counts.ticks += static_cast<std::uint64_t>(leg.flight.ticks);
     }
 }
 
-void PlannedFlights::count_nominal(const FleetJob& fleet, FlightStatistics& counts) const {
+template <class Family>
+void PlannedFlightsOf<Family>::count_nominal(const FleetJob& fleet, FlightStatistics& counts) const {
     const std::uint64_t ticks_before = counts.ticks;
     count(fleet.jobs.front(), counts);
     counts.states_checked += counts.ticks - ticks_before;
     reject(fleet, counts);
 }
 
-std::size_t PlannedFlights::worlds_of_task() const noexcept {
+template <class Family>
+std::size_t PlannedFlightsOf<Family>::worlds_of_task() const noexcept {
     return 1 + (task_.worlds != nullptr ? task_.worlds->worlds.size() : 0);
 }
 
-const FlownWorld* PlannedFlights::world(std::size_t number) const {
+template <class Family>
+auto PlannedFlightsOf<Family>::world(std::size_t number) const -> const FlownWorld* {
     if (number == 0) {
         return nullptr;
     }
@@ -224,7 +277,8 @@ const FlownWorld* PlannedFlights::world(std::size_t number) const {
     return number < own ? &task_.worlds->worlds[number - 1] : &joined_[number - own].world;
 }
 
-void PlannedFlights::join(const std::vector<Counterexample>& counterexamples) {
+template <class Family>
+void PlannedFlightsOf<Family>::join(const std::vector<Counterexample>& counterexamples) {
     joined_.insert(joined_.end(), counterexamples.begin(), counterexamples.end());
     rejected_in_.insert(rejected_in_.end(), counterexamples.size(), 1);
     while (joined_.size() > most_counterexamples) {
@@ -235,7 +289,8 @@ void PlannedFlights::join(const std::vector<Counterexample>& counterexamples) {
     }
 }
 
-Fleet PlannedFlights::fleet_at_start(const FlightState& nominal) const {
+template <class Family>
+auto PlannedFlightsOf<Family>::fleet_at_start(const FlightState& nominal) const -> Fleet {
     Fleet fleet = task_.fleet_from(nominal);
     for (const Counterexample& counterexample : joined_) {
         fleet.push_back(counterexample.start);
@@ -243,20 +298,26 @@ Fleet PlannedFlights::fleet_at_start(const FlightState& nominal) const {
     return fleet;
 }
 
-FleetJob PlannedFlights::job(const Fleet& from, std::int64_t ticks_from_start, std::vector<FlightLeg> legs,
-                             std::int64_t judged_ticks) const {
+template <class Family>
+auto PlannedFlightsOf<Family>::job(const Fleet& from, std::int64_t ticks_from_start, std::vector<FlightLeg> legs,
+                                   std::int64_t judged_ticks) const -> FleetJob {
     FleetJob fleet;
     fleet.jobs.reserve(from.size());
     for (std::size_t i = 0; i < from.size(); ++i) {
-        fleet.jobs.push_back(
-            {from[i], legs, goal().is_of_problem() ? judged_ticks : 0, world(i), task_.first_tick + ticks_from_start});
+        FlightJob& job = fleet.jobs.emplace_back();
+        job.start = from[i];
+        job.legs = legs;
+        job.judged_ticks = goal().is_of_problem() ? judged_ticks : 0;
+        job.world = world(i);
+        job.first_tick = task_.first_tick + ticks_from_start;
     }
     fleet.is_hover_judged = judged_ticks > 0 && !goal().is_of_problem();
     return fleet;
 }
 
 /// Flies those jobs in some worlds that nothing speaks against so far.
-void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<FleetJob> jobs) {
+template <class Family>
+void PlannedFlightsOf<Family>::fly_in(std::span<const std::size_t> worlds, std::span<FleetJob> jobs) {
     if (worlds.empty()) {
         return;
     }
@@ -289,19 +350,22 @@ void PlannedFlights::fly_in(std::span<const std::size_t> worlds, std::span<Fleet
     }
 }
 
-void PlannedFlights::fly(std::span<FleetJob> jobs) {
+template <class Family>
+void PlannedFlightsOf<Family>::fly(std::span<FleetJob> jobs) {
     fly_nominal(jobs);
     fly_in_other_worlds(jobs);
 }
 
-void PlannedFlights::fly_nominal(std::span<FleetJob> jobs) {
+template <class Family>
+void PlannedFlightsOf<Family>::fly_nominal(std::span<FleetJob> jobs) {
     fly_in(std::array<std::size_t, 1>{0}, jobs);
     for (const FleetJob& fleet : jobs) {
         reject(fleet, statistics_);
     }
 }
 
-void PlannedFlights::fly_in_other_worlds(std::span<FleetJob> jobs) {
+template <class Family>
+void PlannedFlightsOf<Family>::fly_in_other_worlds(std::span<FleetJob> jobs) {
     constexpr std::size_t lanes = 8;
     std::vector<FleetJob*> accepted;
     for (FleetJob& fleet : jobs) {
@@ -325,7 +389,8 @@ void PlannedFlights::fly_in_other_worlds(std::span<FleetJob> jobs) {
 }
 
 /// Counts the rejection of a fleet, if it was rejected.
-void PlannedFlights::reject(const FleetJob& fleet, FlightStatistics& counts) const {
+template <class Family>
+void PlannedFlightsOf<Family>::reject(const FleetJob& fleet, FlightStatistics& counts) const {
     const auto rejected = std::find_if(fleet.jobs.begin(), fleet.jobs.end(),
                                        [](const FlightJob& job) { return job.rejected_leg() != nullptr; });
     if (rejected != fleet.jobs.end()) {
@@ -333,9 +398,9 @@ void PlannedFlights::reject(const FleetJob& fleet, FlightStatistics& counts) con
     }
 }
 
-void PlannedFlights::reject(const FlightLeg& leg, const FlownWorld* world, FlightStatistics& counts) const {
-    reject(leg.segment, leg.flight.rejection, configuration_of(leg.end.plant.q),
-           among_obstacles(pose_of(leg.end), world), counts);
+template <class Family>
+void PlannedFlightsOf<Family>::reject(const FlightLeg& leg, const FlownWorld* world, FlightStatistics& counts) const {
+    reject(leg.segment, leg.flight.rejection, place_of(leg.end), pose_among_obstacles(leg.end, world), counts);
 }
 
 bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights& flights) {
@@ -346,7 +411,8 @@ bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights&
            end.ticks - arrival.ticks == hover.segment.ticks() && flights.goal().is_met(end.vehicle);
 }
 
-void PlannedFlights::fly_again(FleetJob& fleet) const {
+template <class Family>
+void PlannedFlightsOf<Family>::fly_again(FleetJob& fleet) const {
     for (std::size_t i = 0; i < fleet.jobs.size(); ++i) {
         FlightJob& job = fleet.jobs[i];
         FlightState vehicle = job.start;
@@ -362,7 +428,8 @@ void PlannedFlights::fly_again(FleetJob& fleet) const {
     }
 }
 
-void PlannedFlights::verify(std::span<const FlightPoint> moments) const {
+template <class Family>
+void PlannedFlightsOf<Family>::verify(std::span<const FlightPoint> moments) const {
     FlightPoint point = moments.front();
     for (std::size_t i = 1; i < moments.size(); ++i) {
         const FlightPoint& next = moments[i];
@@ -377,15 +444,19 @@ void PlannedFlights::verify(std::span<const FlightPoint> moments) const {
     }
 }
 
-FlightLeg PlannedFlights::hold_leg(const ReferencePoint& at) const {
-    return {{at, at, hold_ticks(task_.problem.goal, task_.model, at), tick_s_}};
+template <class Family>
+auto PlannedFlightsOf<Family>::hold_leg(const ReferencePoint& at) const -> FlightLeg {
+    return {{at, at, task_.space.hold_ticks(at), tick_s_}};
 }
 
-std::int64_t PlannedFlights::judged_ticks() const {
+template <class Family>
+std::int64_t PlannedFlightsOf<Family>::judged_ticks() const {
     return std::llround(goal_settling_s / tick_s_);
 }
 
-double PlannedFlights::cost_after(double cost_before, const Fleet& from, const FleetJob& job, std::size_t leg) const {
+template <class Family>
+double PlannedFlightsOf<Family>::cost_after(double cost_before, const Fleet& from, const FleetJob& job,
+                                            std::size_t leg) const {
     double sum = 0;
     const std::size_t worlds = worlds_of_task();
     for (std::size_t i = 0; i < worlds; ++i) {
@@ -394,8 +465,15 @@ double PlannedFlights::cost_after(double cost_before, const Fleet& from, const F
     return cost_before + sum / static_cast<double>(worlds);
 }
 
-ReferenceSegment PlannedFlights::fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const {
+template <class Family>
+auto PlannedFlightsOf<Family>::fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const
+    -> ReferenceSegment {
     return {from, to, shortest_ticks(from, to, limits_, tick_s_), tick_s_};
 }
+
+template struct FlightStatisticsOf<Plane>;
+template struct FlightStatisticsOf<Space>;
+template class PlannedFlightsOf<Plane>;
+template class PlannedFlightsOf<Space>;
 
 }  // namespace downwash::planning

@@ -16,7 +16,10 @@
 namespace downwash::planning {
 
 /// Counters of everything that was flown.
-struct FlightStatistics {
+template <class Family>
+struct FlightStatisticsOf {
+    using Obstruction = typename Family::Obstruction;
+
     std::uint64_t edges = 0;
     std::uint64_t ticks = 0;
     std::uint64_t states_checked = 0;
@@ -25,16 +28,46 @@ struct FlightStatistics {
     StoppedBy stopped_by;
     std::optional<Obstruction> obstruction;  ///< where the rejected way that came nearest to the goal was stopped
 
-    FlightStatistics& operator+=(const FlightStatistics& other);
+    FlightStatisticsOf& operator+=(const FlightStatisticsOf& other);
 };
+using FlightStatistics = FlightStatisticsOf<Plane>;
+
+/// The rules of planned flights. In the nominal world a flight keeps margin and bounds; in other worlds it only has to
+/// succeed, as when a plan is executed.
+[[nodiscard]] FlightRules planning_rules(const Problem& problem, bool in_nominal_world, std::function<bool()> is_over);
 
 /// How the flights of one search are flown, judged, paid for and counted.
-class PlannedFlights {
+template <class Family>
+class PlannedFlightsOf {
  public:
+    using Configuration = typename Family::Configuration;
+    using ReferencePoint = typename Family::ReferencePoint;
+    using ReferenceSegment = typename Family::ReferenceSegment;
+    using MotionLimits = typename Family::MotionLimits;
+    using FlightState = typename Family::FlightState;
+    using FlightJob = typename Family::FlightJob;
+    using FlightLeg = typename Family::FlightLeg;
+    using FlightChain = typename Family::FlightChain;
+    using SegmentFlight = typename Family::SegmentFlight;
+    using FlownWorld = typename Family::FlownWorld;
+    using Pose = typename Family::Pose;
+    using Obstruction = typename Family::Obstruction;
+    using Fleet = FleetOf<Family>;
+    using FleetJob = FleetJobOf<Family>;
+    using Counterexample = CounterexampleOf<Family>;
+    using SearchTask = SearchTaskOf<Family>;
+    using FlightPoint = FlightPointOf<Family>;
+    using EdgeFlights = EdgeFlightsOf<Family>;
+    using GoalRegion = GoalRegionOf<Family>;
+    using ProblemGoal = ProblemGoalOf<Family>;
+    using SearchObjective = SearchObjectiveOf<Family>;
+    using ProblemObjective = ProblemObjectiveOf<Family>;
+    using FlightStatistics = FlightStatisticsOf<Family>;
+
     /// @param task must outlive it
     /// @param is_over asked now and then within flights, from all threads; true ends them without a result
     /// @param threads at least 1; nothing but the time depends on it
-    explicit PlannedFlights(const SearchTask& task, std::function<bool()> is_over = {}, int threads = 1);
+    explicit PlannedFlightsOf(const SearchTask& task, std::function<bool()> is_over = {}, int threads = 1);
 
     /// From now on flights lead to another goal, or are paid for by another objective, than that of the problem;
     /// nullptr: the problem's. They must outlive the flights.
@@ -122,7 +155,6 @@ class PlannedFlights {
     [[nodiscard]] ReferenceSegment fastest_segment(const ReferencePoint& from, const ReferencePoint& to) const;
     [[nodiscard]] const MotionLimits& limits() const noexcept { return limits_; }
 
-    [[nodiscard]] const FlightRules& rules() const noexcept { return nominal_->rules(); }
     [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
     [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
     /// Forgets counterexamples and begins to count anew.
@@ -144,7 +176,7 @@ class PlannedFlights {
     static void count(const FlightJob& job, FlightStatistics& counts);
     /// Counts a rejection at a place of a segment.
     /// @param pose as the obstacles of its world see it
-    void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at, const PlanarPose& pose,
+    void reject(const ReferenceSegment& segment, Rejection rejection, const Configuration& at, const Pose& pose,
                 FlightStatistics& counts) const;
 
     const SearchTask& task_;
@@ -160,6 +192,7 @@ class PlannedFlights {
     std::vector<Counterexample> joined_;
     std::vector<std::uint64_t> rejected_in_;  ///< flights by world, the nominal one first
 };
+using PlannedFlights = PlannedFlightsOf<Plane>;
 
 /// Whether moments end with the hover that the goal asks for: without it they are a way, not a plan.
 [[nodiscard]] bool ends_with_hover(std::span<const FlightPoint> moments, const PlannedFlights& flights);

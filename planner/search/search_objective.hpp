@@ -7,12 +7,17 @@ namespace downwash::planning {
 
 /// What a search keeps small: the objective of its problem, or one that a user of OMPL has written. Costs of legs add
 /// up, and less is better.
-class SearchObjective {
+template <class Family>
+class SearchObjectiveOf {
  public:
-    SearchObjective() = default;
-    virtual ~SearchObjective() = default;
-    SearchObjective(const SearchObjective&) = delete;
-    SearchObjective& operator=(const SearchObjective&) = delete;
+    using Configuration = typename Family::Configuration;
+    using FlightState = typename Family::FlightState;
+    using FlightLeg = typename Family::FlightLeg;
+
+    SearchObjectiveOf() = default;
+    virtual ~SearchObjectiveOf() = default;
+    SearchObjectiveOf(const SearchObjectiveOf&) = delete;
+    SearchObjectiveOf& operator=(const SearchObjectiveOf&) = delete;
 
     /// The cost of a leg that began with a vehicle and was flown to its end.
     [[nodiscard]] virtual double of_leg(const FlightState& from, const FlightLeg& leg) const = 0;
@@ -21,12 +26,20 @@ class SearchObjective {
     /// No way from a configuration to the goal, and hold there, costs less.
     [[nodiscard]] virtual double min_to_goal(const Configuration& from) const = 0;
 };
+using SearchObjective = SearchObjectiveOf<Plane>;
 
 /// The objective of a problem.
-class ProblemObjective final : public SearchObjective {
+template <class Family>
+class ProblemObjectiveOf final : public SearchObjectiveOf<Family> {
  public:
+    using Configuration = typename Family::Configuration;
+    using FlightState = typename Family::FlightState;
+    using FlightLeg = typename Family::FlightLeg;
+    using SearchTask = SearchTaskOf<Family>;
+    using FreeAirCost = FreeAirCostOf<Family>;
+
     /// @param task must outlive it
-    explicit ProblemObjective(const SearchTask& task);
+    explicit ProblemObjectiveOf(const SearchTask& task);
 
     [[nodiscard]] double of_leg(const FlightState& from, const FlightLeg& leg) const override;
     [[nodiscard]] double estimate(const Configuration& from, const Configuration& to) const override {
@@ -41,5 +54,6 @@ class ProblemObjective final : public SearchObjective {
     double tick_s_;
     FreeAirCost free_air_cost_;
 };
+using ProblemObjective = ProblemObjectiveOf<Plane>;
 
 }  // namespace downwash::planning

@@ -10,6 +10,7 @@
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/configuration.hpp"
+#include "downwash/controllers/space_configuration.hpp"
 
 namespace downwash {
 
@@ -32,7 +33,8 @@ struct Improvement {
 /// one that came nearest. `direct_flight`, if it had plans: where the flight of the one that was discarded last came
 /// nearest to an obstacle or, if that is not why, ended. `unfinished_flight` and `unfinished_certificate`: the search
 /// ended before it was known whether that plan counts.
-struct Obstruction {
+template <class Configuration>
+struct BasicObstruction {
     std::string cause;           ///< as in SearchRecord::rejected
     Configuration at;            ///< where it was rejected
     double goal_distance_m = 0;  ///< from there to the goal region; 0 inside
@@ -40,6 +42,8 @@ struct Obstruction {
     /// `closed_plane` those that no way passes.
     std::vector<std::string> obstacles = {};
 };
+using Obstruction = BasicObstruction<Configuration>;
+using SpaceObstruction = BasicObstruction<SpaceConfiguration>;
 
 /// How many edges each obstacle stopped as a collision, by its number in the problem.
 using StoppedBy = std::map<std::size_t, std::uint64_t>;
@@ -81,12 +85,15 @@ struct SearchRecord {
 };
 
 /// A node of the tree that a search has grown.
-struct TreeNode {
+template <class Configuration>
+struct BasicTreeNode {
     static constexpr int no_parent = -1;
 
     Configuration at;
     int parent = no_parent;  ///< number of the parent in the same list
 };
+using TreeNode = BasicTreeNode<Configuration>;
+using SpaceTreeNode = BasicTreeNode<SpaceConfiguration>;
 
 /// Name as in solution files: "solved".
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Status status);

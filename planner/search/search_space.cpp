@@ -4,9 +4,11 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "downwash/base/lane_math.hpp"
 #include "downwash/search/obstacle_labels.hpp"
+#include "downwash/simulation/execution.hpp"
 
 namespace downwash::planning {
 
@@ -19,32 +21,22 @@ ReferencePoint reference_at(const Start& start) noexcept {
     return point;
 }
 
-Configuration between(const Configuration& a, const Configuration& b, double s) noexcept {
-    Configuration c;
-    for (std::size_t axis = 0; axis < max_axes; ++axis) {
-        c[axis] = a[axis] + s * (b[axis] - a[axis]);
-    }
-    return c;
-}
-
 namespace {
 
-std::vector<SearchAxis> search_axes(const Bounds& bounds, const ArmParameters& arm) {
+std::vector<SearchAxis> search_axes(const Bounds& bounds, const ArmParameters& arm, const MotionLimits& motion) {
     const bool wraps = !arm.is_limited;
-    return {{AxisGroup::translation, bounds.x_low_m, bounds.x_high_m, 1, false},
-            {AxisGroup::translation, bounds.z_low_m, bounds.z_high_m, 1, false},
+    const double speed_m_s = motion.max_speed_m_s, acceleration_m_s2 = motion.max_acceleration_m_s2;
+    return {{AxisGroup::translation, bounds.x_low_m, bounds.x_high_m, 1, false, 1, speed_m_s, acceleration_m_s2},
+            {AxisGroup::translation, bounds.z_low_m, bounds.z_high_m, 1, false, 1, speed_m_s, acceleration_m_s2},
             {AxisGroup::joint, wraps ? -std::numbers::pi : arm.lower_limit_rad,
-             wraps ? std::numbers::pi : arm.upper_limit_rad, 0.5 * arm.length_m, wraps}};
+             wraps ? std::numbers::pi : arm.upper_limit_rad, 0.5 * arm.length_m, wraps, arm.length_m,
+             motion.max_arm_rate_rad_s, motion.max_arm_acceleration_rad_s2}};
 }
 
 }  // namespace
 
-SearchSpace::SearchSpace(const Problem& problem, const FlightModel& model)
-    : model_(model),
-      axes_(search_axes(problem.bounds, problem.robot.arm)),
-      goal_(problem.goal),
-      arm_weight_m_(0.5 * problem.robot.arm.length_m),
-      margin_m_(problem.planner.safety_margin_m) {
+template <class Family>
+SearchAxesOf<Family>::SearchAxesOf(std::vector<SearchAxis> axes) : axes_(std::move(axes)) {
     for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
         if (axes_[axis].group == AxisGroup::translation) {
             translations_.push_back(axis);
@@ -52,30 +44,40 @@ SearchSpace::SearchSpace(const Problem& problem, const FlightModel& model)
     }
 }
 
-double SearchSpace::way(std::size_t axis, double from, double to) const noexcept {
+template <class Family>
+double SearchAxesOf<Family>::way(std::size_t axis, double from, double to) const noexcept {
     return axes_[axis].wraps ? lane::wrap_angle(to - from) : to - from;
 }
 
+SearchSpace::SearchSpace(const Problem& problem, const FlightModel& model)
+    : SearchAxesOf<Plane>(search_axes(problem.bounds, problem.robot.arm, problem.motion)),
+      model_(model),
+      goal_(problem.goal),
+      arm_weight_m_(0.5 * problem.robot.arm.length_m),
+      margin_m_(problem.planner.safety_margin_m) {}
+
 double SearchSpace::turn_rad(const Configuration& from, const Configuration& to) const noexcept {
     double largest = 0;
-    for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
-        if (axes_[axis].group == AxisGroup::joint) {
+    for (std::size_t axis = 0; axis < axes().size(); ++axis) {
+        if (axes()[axis].group == AxisGroup::joint) {
             largest = std::max(largest, std::abs(way(axis, from[axis], to[axis])));
         }
     }
     return largest;
 }
 
-Configuration SearchSpace::seen_from(const Configuration& from, Configuration to) const noexcept {
+template <class Family>
+auto SearchAxesOf<Family>::seen_from(const Configuration& from, Configuration to) const noexcept -> Configuration {
     for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
-        if (axes_[axis].group == AxisGroup::joint) {
+        if (axes_[axis].group != AxisGroup::translation) {
             to[axis] = from[axis] + way(axis, from[axis], to[axis]);
         }
     }
     return to;
 }
 
-double SearchSpace::travel_m(const Configuration& a, const Configuration& b) const noexcept {
+template <class Family>
+double SearchAxesOf<Family>::travel_m(const Configuration& a, const Configuration& b) const noexcept {
     double squares = 0;
     for (const std::size_t axis : translations_) {
         const double way = b[axis] - a[axis];
@@ -91,8 +93,8 @@ double SearchSpace::distance_m(const Configuration& a, const Configuration& b) c
 double SearchSpace::squared_distance_m2(const Configuration& a, const Configuration& b,
                                         double enough_m2) const noexcept {
     double squares = 0;
-    for (std::size_t axis = 0; axis < axes_.size() && squares < enough_m2; ++axis) {
-        const double length_m = axes_[axis].weight_m * way(axis, a[axis], b[axis]);
+    for (std::size_t axis = 0; axis < axes().size() && squares < enough_m2; ++axis) {
+        const double length_m = axes()[axis].weight_m * way(axis, a[axis], b[axis]);
         squares += length_m * length_m;
     }
     return squares;
@@ -107,7 +109,8 @@ Configuration SearchSpace::steered(const Configuration& from, const Configuratio
     return between(from, target, range_m / distance);
 }
 
-Configuration SearchSpace::sample(Random& random) const {
+template <class Family>
+auto SearchAxesOf<Family>::sample(Random& random) const -> Configuration {
     Configuration c;
     for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
         c[axis] = random.uniform(axes_[axis].low, axes_[axis].high);
@@ -117,7 +120,7 @@ Configuration SearchSpace::sample(Random& random) const {
 
 double SearchSpace::into_arm_range(double arm_rad, double near_rad) const noexcept {
     constexpr double turn = 2 * std::numbers::pi;
-    const SearchAxis& arm = axes_[plane::arm];
+    const SearchAxis& arm = axes()[plane::arm];
     const double least = arm_rad - turn * std::floor((arm_rad - arm.low) / turn);
     const double turns_to_spare = std::floor((arm.high - least) / turn);
     if (arm.wraps || turns_to_spare < 1) {
@@ -126,7 +129,9 @@ double SearchSpace::into_arm_range(double arm_rad, double near_rad) const noexce
     return least + turn * std::clamp(std::round((near_rad - least) / turn), 0.0, turns_to_spare);
 }
 
-Configuration SearchSpace::sample_near(const Configuration& configuration, double radius_m, Random& random) const {
+template <class Family>
+auto SearchAxesOf<Family>::sample_near(const Configuration& configuration, double radius_m, Random& random) const
+    -> Configuration {
     Configuration c;
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         const SearchAxis& axis = axes_[i];
@@ -236,7 +241,8 @@ GoalError SearchSpace::error_beyond_tolerance(const Goal& goal, const Configurat
             beyond(d.angle_rad, usable.angle_rad), tolerance.used_share(d)};
 }
 
-Rejection SearchSpace::limit_left_at(const Configuration& c) const noexcept {
+template <class Family>
+Rejection SearchAxesOf<Family>::limit_left_at(const Configuration& c) const noexcept {
     for (std::size_t i = 0; i < axes_.size(); ++i) {
         const SearchAxis& axis = axes_[i];
         if (!axis.wraps && !(c[i] >= axis.low && c[i] <= axis.high)) {
@@ -247,12 +253,30 @@ Rejection SearchSpace::limit_left_at(const Configuration& c) const noexcept {
 }
 
 Rejection SearchSpace::rejection_at(const Configuration& c, double pitch_rad) const {
+    PlanarPose pose = level_at(c);
+    pose.pitch_rad = pitch_rad;
+    return rejection_at(c, pose);
+}
+
+Rejection SearchSpace::rejection_at(const Configuration& c, const PlanarPose& pose) const {
     if (const Rejection left = limit_left_at(c); left != Rejection::none) {
         return left;
     }
-    PlanarPose pose = level_at(c);
-    pose.pitch_rad = pitch_rad;
     return model_.collisions().is_nearer_than(pose, margin_m_) ? Rejection::collision : Rejection::none;
+}
+
+PlanarPose SearchSpace::pose_along(const ReferencePoint& point, bool tilts) const {
+    PlanarPose pose = level_at(configuration_of(point));
+    pose.pitch_rad = tilts ? pitch_along(point) : 0;
+    return pose;
+}
+
+std::int64_t SearchSpace::hold_ticks(const ReferencePoint& at) const {
+    return downwash::hold_ticks(goal_, model_, at);
+}
+
+bool SearchSpace::is_met(const FlightState& vehicle) const {
+    return meets_goal(goal_, model_.tick().plant, vehicle);
 }
 
 bool SearchSpace::is_allowed(const Configuration& configuration, QueryCounts& counts) const {
@@ -265,11 +289,14 @@ bool SearchSpace::is_allowed(const Configuration& configuration, QueryCounts& co
 
 double SearchSpace::extent_m() const noexcept {
     double squares = 0;
-    for (const SearchAxis& axis : axes_) {
+    for (const SearchAxis& axis : axes()) {
         const double length_m = axis.weight_m * (axis.wraps ? std::numbers::pi : axis.high - axis.low);
         squares += length_m * length_m;
     }
     return std::sqrt(squares);
 }
+
+template class SearchAxesOf<Plane>;
+template class SearchAxesOf<Space>;
 
 }  // namespace downwash::planning

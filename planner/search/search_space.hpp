@@ -6,6 +6,7 @@
 
 #include "downwash/controllers/configuration.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/search/family.hpp"
 #include "downwash/search/query_counts.hpp"
 #include "downwash/search/random.hpp"
 #include "downwash/simulation/flight.hpp"
@@ -16,46 +17,92 @@ namespace downwash::planning {
 /// The reference at the start of a problem: the one point of a plan that may move.
 [[nodiscard]] ReferencePoint reference_at(const Start& start) noexcept;
 
-/// The point at the share s of the straight line from a to b, arm angles taken as they stand.
-[[nodiscard]] Configuration between(const Configuration& a, const Configuration& b, double s) noexcept;
+/// Where a problem begins.
+[[nodiscard]] inline Configuration place_of(const Start& start) noexcept {
+    return start.at;
+}
+
+/// The point at the share s of the straight line from a to b, angles taken as they stand.
+template <class Configuration>
+[[nodiscard]] Configuration between(const Configuration& a, const Configuration& b, double s) noexcept {
+    Configuration c;
+    for (std::size_t axis = 0; axis < c.coordinate.size(); ++axis) {
+        c[axis] = a[axis] + s * (b[axis] - a[axis]);
+    }
+    return c;
+}
+
+/// Peak over mean speed of the rest-to-rest reference: no motion, however divided, takes less beyond its way over the
+/// top speed.
+inline constexpr double peak_over_mean_speed = 15.0 / 8.0;
 
 /// An axis as a search sees it.
 struct SearchAxis {
     AxisGroup group;
-    double low, high;  ///< its values; of an axis that wraps one turn of them [m or rad]
-    double weight_m;   ///< metres that a unit of it counts for in distances
-    bool wraps;        ///< values a turn apart are the same place
+    double low, high;                   ///< its values; of an axis that wraps one turn of them [m or rad]
+    double weight_m;                    ///< metres that a unit of it counts for in distances
+    bool wraps;                         ///< values a turn apart are the same place
+    double reach_m;                     ///< no point of the robot moves farther as the value changes by one unit
+    double max_rate, max_acceleration;  ///< of references; of translations that of all together
 
     /// Whether there is but one value.
     [[nodiscard]] bool is_fixed() const noexcept { return low == high; }
 };
 
-/// The space of configurations of one problem: distances, samples, goals and collisions of the level vehicle.
-class SearchSpace {
+/// What the spaces of configurations of both families have in common: their axes, samples, and ways along axes.
+template <class Family>
+class SearchAxesOf {
  public:
-    SearchSpace(const Problem& problem, const FlightModel& model);
+    using Configuration = typename Family::Configuration;
 
-    [[nodiscard]] const Goal& goal() const noexcept { return goal_; }
     /// The axes in the order of a configuration's coordinates.
     [[nodiscard]] std::span<const SearchAxis> axes() const noexcept { return axes_; }
 
     /// Indices of the axes that are translations.
     [[nodiscard]] std::span<const std::size_t> translations() const noexcept { return translations_; }
 
-    /// Metres that one radian of the arm counts for: half the arm's length.
-    [[nodiscard]] double arm_weight_m() const noexcept { return arm_weight_m_; }
-
     /// The way from one value of an axis to another [m or rad]: the shorter one where the axis wraps.
     [[nodiscard]] double way(std::size_t axis, double from, double to) const noexcept;
-
-    /// The largest turn of any joint between two configurations [rad], >= 0.
-    [[nodiscard]] double turn_rad(const Configuration& from, const Configuration& to) const noexcept;
 
     /// `to` with the angles that wrap unwrapped so that they are reached from `from` by the shorter turn.
     [[nodiscard]] Configuration seen_from(const Configuration& from, Configuration to) const noexcept;
 
     /// Straight distance of the vehicle's positions [m].
     [[nodiscard]] double travel_m(const Configuration& a, const Configuration& b) const noexcept;
+
+    /// A configuration within the bounds.
+    [[nodiscard]] Configuration sample(Random& random) const;
+
+    /// A configuration within the bounds, at most `radius_m` beside another in each coordinate.
+    [[nodiscard]] Configuration sample_near(const Configuration& configuration, double radius_m, Random& random) const;
+
+    /// Which limit a configuration leaves: `bounds`, `arm_limits`, or `none`.
+    [[nodiscard]] Rejection limit_left_at(const Configuration& configuration) const noexcept;
+    [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept {
+        return limit_left_at(configuration) == Rejection::none;
+    }
+
+ protected:
+    explicit SearchAxesOf(std::vector<SearchAxis> axes);
+    ~SearchAxesOf() = default;
+
+ private:
+    std::vector<SearchAxis> axes_;
+    std::vector<std::size_t> translations_;
+};
+
+/// The space of configurations of one problem: distances, samples, goals and collisions of the level vehicle.
+class SearchSpace : public SearchAxesOf<Plane> {
+ public:
+    SearchSpace(const Problem& problem, const FlightModel& model);
+
+    [[nodiscard]] const Goal& goal() const noexcept { return goal_; }
+
+    /// Metres that one radian of the arm counts for: half the arm's length.
+    [[nodiscard]] double arm_weight_m() const noexcept { return arm_weight_m_; }
+
+    /// The largest turn of any joint between two configurations [rad], >= 0.
+    [[nodiscard]] double turn_rad(const Configuration& from, const Configuration& to) const noexcept;
 
     /// The square root of the weighted squares of the ways along all axes [m]: sqrt(dx^2 + dz^2 + (w darm)^2).
     [[nodiscard]] double distance_m(const Configuration& a, const Configuration& b) const noexcept;
@@ -67,16 +114,10 @@ class SearchSpace {
     /// The point at most `range_m` from `from` on the straight line towards `to`.
     [[nodiscard]] Configuration steered(const Configuration& from, const Configuration& to, double range_m) const;
 
-    /// A configuration within the bounds.
-    [[nodiscard]] Configuration sample(Random& random) const;
-
     /// A configuration of the level vehicle that meets the goal, free of collision: inverse kinematics with the arm in
     /// any direction that the goal leaves open, so both branches of the arm occur; alternatives come in random order.
     /// Nothing after some failed tries.
     [[nodiscard]] std::optional<Configuration> sample_goal(Random& random) const;
-
-    /// A configuration within the bounds, at most `radius_m` beside another in each coordinate.
-    [[nodiscard]] Configuration sample_near(const Configuration& configuration, double radius_m, Random& random) const;
 
     /// A configuration beside one that meets the goal, which meets it too: what the goal leaves free is moved. Nothing
     /// when that collides.
@@ -111,14 +152,19 @@ class SearchSpace {
         return rejection_at(configuration) == Rejection::none;
     }
 
+    /// What forbids the vehicle in a pose there.
+    [[nodiscard]] Rejection rejection_at(const Configuration& configuration, const PlanarPose& pose) const;
+
+    /// The pose of a vehicle at a point of a reference: level or, if it tilts as the reference asks, with its pitch.
+    [[nodiscard]] PlanarPose pose_along(const ReferencePoint& point, bool tilts) const;
+
+    /// For how many ticks a point is held as the goal.
+    [[nodiscard]] std::int64_t hold_ticks(const ReferencePoint& at) const;
+    /// Whether a vehicle meets the goal now: within its tolerances, and slow.
+    [[nodiscard]] bool is_met(const FlightState& vehicle) const;
+
     /// Whether nothing forbids the level vehicle there; counts the query and what came of it.
     [[nodiscard]] bool is_allowed(const Configuration& configuration, QueryCounts& counts) const;
-
-    /// Which limit a configuration leaves: `bounds`, `arm_limits`, or `none`.
-    [[nodiscard]] Rejection limit_left_at(const Configuration& configuration) const noexcept;
-    [[nodiscard]] bool is_inside(const Configuration& configuration) const noexcept {
-        return limit_left_at(configuration) == Rejection::none;
-    }
 
     /// Largest distance between two configurations [m].
     [[nodiscard]] double extent_m() const noexcept;
@@ -131,8 +177,6 @@ class SearchSpace {
     [[nodiscard]] double into_arm_range(double arm_rad, double near_rad) const noexcept;
 
     const FlightModel& model_;
-    std::vector<SearchAxis> axes_;
-    std::vector<std::size_t> translations_;
     Goal goal_;
     double arm_weight_m_;
     double margin_m_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <type_traits>
 #include <unordered_set>
 #include <utility>
 
@@ -13,11 +14,12 @@ namespace {
 /// The nodes and all that lies between them and the root, each once. As every edge ends at rest, one long edge is
 /// cheaper than several short ones along the same line, so ancestors are worth trying as parents (Quick-RRT*, Jeong
 /// et al. 2019).
-std::vector<FlightNode*> with_ancestors(const std::vector<FlightNode*>& nodes) {
-    std::vector<FlightNode*> all = nodes;
-    std::unordered_set<const FlightNode*> known(nodes.begin(), nodes.end());
-    for (FlightNode* node : nodes) {
-        for (FlightNode* n = node->parent; n != nullptr && known.insert(n).second; n = n->parent) {
+template <class Node>
+std::vector<Node*> with_ancestors(const std::vector<Node*>& nodes) {
+    std::vector<Node*> all = nodes;
+    std::unordered_set<const Node*> known(nodes.begin(), nodes.end());
+    for (Node* node : nodes) {
+        for (Node* n = node->parent; n != nullptr && known.insert(n).second; n = n->parent) {
             all.push_back(n);
         }
     }
@@ -25,6 +27,7 @@ std::vector<FlightNode*> with_ancestors(const std::vector<FlightNode*>& nodes) {
 }
 
 /// The distance of a place from the straight lines between the points of a way [m].
+template <class Configuration, class ReferencePoint>
 double distance_from_way_m(const Configuration& place, const std::vector<ReferencePoint>& way,
                            std::span<const std::size_t> translations) {
     double nearest_m = HUGE_VAL;
@@ -48,8 +51,10 @@ double distance_from_way_m(const Configuration& place, const std::vector<Referen
 
 }  // namespace
 
-TreeGrowth::TreeGrowth(const FlightPoint& start, const SearchSpace& space, const FlightTreeParameters& parameters,
-                       PlannedFlights& flights, Random& random, PlaceSampler& sampler)
+template <class Family>
+TreeGrowthOf<Family>::TreeGrowthOf(const FlightPoint& start, const SearchSpace& space,
+                                   const FlightTreeParameters& parameters, PlannedFlights& flights, Random& random,
+                                   PlaceSampler& sampler)
     : space_(space),
       parameters_(parameters),
       flights_(flights),
@@ -66,14 +71,16 @@ TreeGrowth::TreeGrowth(const FlightPoint& start, const SearchSpace& space, const
     }
 }
 
-void TreeGrowth::try_first(std::vector<Configuration> places) {
+template <class Family>
+void TreeGrowthOf<Family>::try_first(std::vector<Configuration> places) {
     first_places_ = std::move(places);
     std::reverse(first_places_.begin(), first_places_.end());
 }
 
 /// The next point on the way through a passage that is due, or the first of a new way; nothing where it is the turn of
 /// other samples.
-std::optional<ReferencePoint> TreeGrowth::point_of_passage() {
+template <class Family>
+auto TreeGrowthOf<Family>::point_of_passage() -> std::optional<ReferencePoint> {
     if (!due_.empty() && due_.front().batch <= batch_) {
         const ReferencePoint point = due_.front().point;
         due_.pop_front();
@@ -82,27 +89,32 @@ std::optional<ReferencePoint> TreeGrowth::point_of_passage() {
     if (!random_.chance(parameters_.passage_share)) {
         return std::nullopt;
     }
-    const auto distance_m = [this](const ReferencePoint& point) {
-        const Configuration place = configuration_of(point);
-        return space_.distance_m(tree_.nearest(place, 1).front()->configuration, place);
-    };
-    // A way between places that the tree has reached already is none worth knowing.
-    std::optional<Passage> passage = passages_.sample(random_, [&](const Passage& way) {
-        return std::max(distance_m(way.run_up), distance_m(way.run_out)) > parameters_.alternative_distance_m;
-    });
-    if (!passage) {
+    if constexpr (std::is_same_v<typename Family::PassageSampler, NoPassages>) {
         return std::nullopt;
+    } else {
+        const auto distance_m = [this](const ReferencePoint& point) {
+            const Configuration place = configuration_of(point);
+            return space_.distance_m(tree_.nearest(place, 1).front()->configuration, place);
+        };
+        // A way between places that the tree has reached already is none worth knowing.
+        std::optional<Passage> passage = passages_.sample(random_, [&](const Passage& way) {
+            return std::max(distance_m(way.run_up), distance_m(way.run_out)) > parameters_.alternative_distance_m;
+        });
+        if (!passage) {
+            return std::nullopt;
+        }
+        if (distance_m(passage->run_out) < distance_m(passage->run_up)) {
+            passage = reversed(*passage);
+        }
+        due_.push_back({batch_ + 1, passage->through});
+        due_.push_back({batch_ + 2, passage->run_out});
+        return passage->run_up;
     }
-    if (distance_m(passage->run_out) < distance_m(passage->run_up)) {
-        passage = reversed(*passage);
-    }
-    due_.push_back({batch_ + 1, passage->through});
-    due_.push_back({batch_ + 2, passage->run_out});
-    return passage->run_up;
 }
 
 /// Where the next sample leads; nothing where none is found.
-std::optional<ReferencePoint> TreeGrowth::aim() {
+template <class Family>
+auto TreeGrowthOf<Family>::aim() -> std::optional<ReferencePoint> {
     if (parameters_.passage_share > 0 && first_places_.empty()) {
         if (const std::optional<ReferencePoint> point = point_of_passage()) {
             return point;
@@ -124,7 +136,8 @@ std::optional<ReferencePoint> TreeGrowth::aim() {
     return at_rest(to);
 }
 
-std::optional<Configuration> TreeGrowth::target() {
+template <class Family>
+auto TreeGrowthOf<Family>::target() -> std::optional<Configuration> {
     if (!first_places_.empty()) {
         const Configuration place = first_places_.back();
         first_places_.pop_back();
@@ -138,7 +151,8 @@ std::optional<Configuration> TreeGrowth::target() {
                : sampler_.anywhere(parameters_.max_detour * best_hold_cost_);
 }
 
-std::optional<Configuration> TreeGrowth::target_beside_plan() {
+template <class Family>
+auto TreeGrowthOf<Family>::target_beside_plan() -> std::optional<Configuration> {
     const std::size_t knots = known_plan_->size() - 1;
     const auto i = static_cast<std::size_t>(random_.uniform(0, static_cast<double>(knots)));
     const Configuration knot = configuration_of((*known_plan_)[i].reference);
@@ -146,14 +160,16 @@ std::optional<Configuration> TreeGrowth::target_beside_plan() {
     return i + 1 == knots ? flights_.goal().sample_near(knot, radius_m, random_) : sampler_.near(knot, radius_m);
 }
 
-std::size_t TreeGrowth::neighbour_count() const {
+template <class Family>
+std::size_t TreeGrowthOf<Family>::neighbour_count() const {
     // k-nearest RRT* (Karaman and Frazzoli 2011): k > e (1 + 1/d) log n in d dimensions.
-    constexpr double dimension = 3;
+    const auto dimension = static_cast<double>(space_.axes().size());
     const auto n = static_cast<double>(tree_.size());
     return static_cast<std::size_t>(std::ceil(std::numbers::e * (1 + 1 / dimension) * std::log(n + 1)));
 }
 
-std::uint64_t TreeGrowth::grow(std::optional<std::uint64_t> max_samples) {
+template <class Family>
+std::uint64_t TreeGrowthOf<Family>::grow(std::optional<std::uint64_t> max_samples) {
     const auto wanted = static_cast<std::uint64_t>(has_plan() ? parameters_.batch_size : parameters_.first_batch_size);
     const std::uint64_t samples = std::min(wanted, max_samples.value_or(wanted));
     std::vector<Growth> batch;
@@ -172,7 +188,8 @@ std::uint64_t TreeGrowth::grow(std::optional<std::uint64_t> max_samples) {
     return samples;
 }
 
-std::optional<TreeGrowth::Growth> TreeGrowth::sampled() {
+template <class Family>
+auto TreeGrowthOf<Family>::sampled() -> std::optional<TreeGrowth::Growth> {
     const std::optional<ReferencePoint> to = aim();
     if (!to) {
         return std::nullopt;
@@ -189,21 +206,23 @@ std::optional<TreeGrowth::Growth> TreeGrowth::sampled() {
             growth.parents.push_back({node, estimate});
         }
     }
-    std::stable_sort(growth.parents.begin(), growth.parents.end(),
-                     [](const Growth::Parent& a, const Growth::Parent& b) { return a.estimate < b.estimate; });
+    std::stable_sort(
+        growth.parents.begin(), growth.parents.end(),
+        [](const typename Growth::Parent& a, const typename Growth::Parent& b) { return a.estimate < b.estimate; });
     return growth;
 }
 
 /// The parents of one sample, tried in the order of their estimates until none can be cheaper.
-class TreeGrowth::ParentChoice final : public FlightTree::EdgeChain {
+template <class Family>
+class TreeGrowthOf<Family>::ParentChoice final : public FlightTreeOf<Family>::EdgeChain {
  public:
     ParentChoice(const TreeGrowth& tree, Growth& growth) : tree_(tree), growth_(growth) {}
 
-    std::optional<FlightTree::Edge> next() override {
+    std::optional<Edge> next() override {
         if (growth_.next_parent == growth_.parents.size()) {
             return std::nullopt;
         }
-        const Growth::Parent& parent = growth_.parents[growth_.next_parent];
+        const typename Growth::Parent& parent = growth_.parents[growth_.next_parent];
         // Until there is a plan any way on will do.
         if (growth_.best && (parent.estimate >= growth_.best->cost || !tree_.has_plan())) {
             growth_.next_parent = growth_.parents.size();
@@ -212,10 +231,10 @@ class TreeGrowth::ParentChoice final : public FlightTree::EdgeChain {
         ReferencePoint to = growth_.to;
         const Configuration seen = tree_.space_.seen_from(parent.node->configuration, configuration_of(to));
         std::copy(seen.coordinate.begin(), seen.coordinate.end(), to.position);
-        return FlightTree::Edge{parent.node, to};
+        return Edge{parent.node, to};
     }
 
-    void note(std::optional<FlightTree::Flown> flight) override {
+    void note(std::optional<Flown> flight) override {
         if (flight && (!growth_.best || flight->cost < growth_.best->cost)) {
             growth_.best = std::move(flight);
             growth_.best_parent = growth_.parents[growth_.next_parent].node;
@@ -228,9 +247,10 @@ class TreeGrowth::ParentChoice final : public FlightTree::EdgeChain {
     Growth& growth_;
 };
 
-void TreeGrowth::choose_parents(std::vector<Growth>& batch) {
+template <class Family>
+void TreeGrowthOf<Family>::choose_parents(std::vector<Growth>& batch) {
     std::deque<ParentChoice> choices;
-    std::vector<FlightTree::EdgeChain*> chains;
+    std::vector<EdgeChain*> chains;
     chains.reserve(batch.size());
     for (Growth& growth : batch) {
         chains.push_back(&choices.emplace_back(*this, growth));
@@ -239,7 +259,8 @@ void TreeGrowth::choose_parents(std::vector<Growth>& batch) {
 }
 
 /// One node per sample, nullptr for those that became none.
-std::vector<FlightNode*> TreeGrowth::add(const std::vector<Growth>& batch) {
+template <class Family>
+auto TreeGrowthOf<Family>::add(const std::vector<Growth>& batch) -> std::vector<FlightNode*> {
     std::vector<FlightNode*> added;
     for (const Growth& growth : batch) {
         const bool is_worthwhile =
@@ -251,7 +272,8 @@ std::vector<FlightNode*> TreeGrowth::add(const std::vector<Growth>& batch) {
     return added;
 }
 
-void TreeGrowth::add_holds(const std::vector<FlightNode*>& added) {
+template <class Family>
+void TreeGrowthOf<Family>::add_holds(const std::vector<FlightNode*>& added) {
     std::vector<FlightNode*> arrived;
     for (FlightNode* node : added) {
         if (node == nullptr || !is_at_rest(node->reference)) {
@@ -270,8 +292,9 @@ void TreeGrowth::add_holds(const std::vector<FlightNode*>& added) {
     note_best_hold();
 }
 
-void TreeGrowth::rewire_through(const std::vector<Growth>& batch, const std::vector<FlightNode*>& added) {
-    std::vector<FlightTree::Rewiring> rewirings;
+template <class Family>
+void TreeGrowthOf<Family>::rewire_through(const std::vector<Growth>& batch, const std::vector<FlightNode*>& added) {
+    std::vector<Rewiring> rewirings;
     const FlightNode* hold = best_hold();
     for (std::size_t i = 0; i < batch.size(); ++i) {
         FlightNode* const node = added[i];
@@ -297,12 +320,14 @@ void TreeGrowth::rewire_through(const std::vector<Growth>& batch, const std::vec
     note_best_hold();
 }
 
-void TreeGrowth::discard(FlightNode& hold) {
+template <class Family>
+void TreeGrowthOf<Family>::discard(FlightNode& hold) {
     hold.is_discarded = true;
     note_best_hold();
 }
 
-const FlightNode* TreeGrowth::hold_away_from(const std::vector<ReferencePoint>& way) {
+template <class Family>
+auto TreeGrowthOf<Family>::hold_away_from(const std::vector<ReferencePoint>& way) -> const FlightNode* {
     constexpr int draws = 8;
     const auto& holds = tree_.holds();
     const FlightNode* farthest = nullptr;
@@ -321,7 +346,8 @@ const FlightNode* TreeGrowth::hold_away_from(const std::vector<ReferencePoint>& 
     return farthest;
 }
 
-const FlightNode* TreeGrowth::hold_by_rank(std::size_t rank) const {
+template <class Family>
+auto TreeGrowthOf<Family>::hold_by_rank(std::size_t rank) const -> const FlightNode* {
     std::vector<FlightNode*> holds = tree_.holds();
     if (holds.empty()) {
         return nullptr;
@@ -331,7 +357,8 @@ const FlightNode* TreeGrowth::hold_by_rank(std::size_t rank) const {
     return holds[rank % holds.size()];
 }
 
-FlightNode* TreeGrowth::best_hold() const {
+template <class Family>
+auto TreeGrowthOf<Family>::best_hold() const -> FlightNode* {
     FlightNode* best = nullptr;
     for (FlightNode* hold : tree_.holds()) {
         if (!hold->is_discarded && (best == nullptr || hold->cost < best->cost)) {
@@ -341,9 +368,13 @@ FlightNode* TreeGrowth::best_hold() const {
     return best;
 }
 
-void TreeGrowth::note_best_hold() {
+template <class Family>
+void TreeGrowthOf<Family>::note_best_hold() {
     const FlightNode* const hold = best_hold();
     best_hold_cost_ = hold != nullptr ? hold->cost : HUGE_VAL;
 }
+
+template class TreeGrowthOf<Plane>;
+template class TreeGrowthOf<Space>;
 
 }  // namespace downwash::planning

@@ -16,11 +16,26 @@ namespace downwash::planning {
 
 /// How the tree of flights grows: RRT* in batches of samples, whose edges are simulated side by side. Parents are
 /// chosen and nodes rewired by simulated cost; nodes within the goal's tolerances get holds.
-class TreeGrowth {
+template <class Family>
+class TreeGrowthOf {
  public:
+    using TreeGrowth = TreeGrowthOf;
+    using Configuration = typename Family::Configuration;
+    using ReferencePoint = typename Family::ReferencePoint;
+    using SearchSpace = typename Family::SearchSpace;
+    using FlightPoint = FlightPointOf<Family>;
+    using PlannedFlights = PlannedFlightsOf<Family>;
+    using FlightNode = FlightNodeOf<Family>;
+    using FlightTree = FlightTreeOf<Family>;
+    using PlaceSampler = PlaceSamplerOf<Family>;
+    using Edge = typename FlightTree::Edge;
+    using Flown = typename FlightTree::Flown;
+    using EdgeChain = typename FlightTree::EdgeChain;
+    using Rewiring = typename FlightTree::Rewiring;
+
     /// All arguments must outlive the growth. @param sampler may draw from `random`, too
-    TreeGrowth(const FlightPoint& start, const SearchSpace& space, const FlightTreeParameters& parameters,
-               PlannedFlights& flights, Random& random, PlaceSampler& sampler);
+    TreeGrowthOf(const FlightPoint& start, const SearchSpace& space, const FlightTreeParameters& parameters,
+                 PlannedFlights& flights, Random& random, PlaceSampler& sampler);
 
     /// One batch. @return the samples drawn: `max_samples`, or as many as make a batch
     std::uint64_t grow(std::optional<std::uint64_t> max_samples);
@@ -57,7 +72,7 @@ class TreeGrowth {
         };
         std::vector<Parent> parents;  ///< by estimate
         std::size_t next_parent = 0;
-        std::optional<FlightTree::Flown> best;
+        std::optional<Flown> best;
         FlightNode* best_parent = nullptr;
     };
 
@@ -80,7 +95,7 @@ class TreeGrowth {
     PlannedFlights& flights_;
     Random& random_;
     PlaceSampler& sampler_;
-    PassageSampler passages_;
+    typename Family::PassageSampler passages_;
     /// Points on the way through a passage, each to be tried in a later batch than the one before.
     struct Due {
         std::uint64_t batch;
@@ -95,5 +110,6 @@ class TreeGrowth {
     const FlightNode* nearest_to_goal_;
     double nearest_distance_m_;
 };
+using TreeGrowth = TreeGrowthOf<Plane>;
 
 }  // namespace downwash::planning

@@ -54,12 +54,12 @@ struct Search : AsPlanner {
         Problem searched = test::ceiling_problem(), int threads = 1,
         const std::function<bool()>& is_over = [] { return false; })
         : AsPlanner(std::move(searched), threads) {
-        planner.set_hooks({std::move(survives), {}});
-        planner.set_max_iterations(iterations);
+        planner.search().set_hooks({std::move(survives), {}});
+        planner.search().set_max_iterations(iterations);
         static_cast<void>(planner.solve(::ompl::base::PlannerTerminationCondition(is_over)));
     }
     static bool accept_all(const planning::Candidate& /*candidate*/) { return true; }
-    [[nodiscard]] const planning::FlightTree& tree() const { return planner.growth().tree(); }
+    [[nodiscard]] const planning::FlightTree& tree() const { return planner.search().growth().tree(); }
 };
 
 }  // namespace
@@ -68,12 +68,12 @@ TEST_CASE("a rejected plan is counted and discarded, and the search goes on to a
     int asked = 0;
     const Search search(300, [&asked](const planning::Candidate&) { return ++asked > 3; });
     CHECK(asked > 3);
-    CHECK(search.planner.statistics().rejected.at("direct_flight") == 3);
-    REQUIRE(search.planner.best());
-    CHECK(search.planner.iterations() == 300);
+    CHECK(search.planner.search().statistics().rejected.at("direct_flight") == 3);
+    REQUIRE(search.planner.search().best());
+    CHECK(search.planner.search().iterations() == 300);
     const Search without(60, [](const planning::Candidate&) { return false; });
-    CHECK(without.planner.statistics().rejected.at("direct_flight") > 1);
-    CHECK_FALSE(without.planner.best());
+    CHECK(without.planner.search().statistics().rejected.at("direct_flight") > 1);
+    CHECK_FALSE(without.planner.search().best());
 }
 
 TEST_CASE("what is rejected does not depend on threads, nor does what comes of it") {
@@ -84,9 +84,9 @@ TEST_CASE("what is rejected does not depend on threads, nor does what comes of i
             return asked.size() % 3 == 0;
         };
         const Search search(1600, every_third, with_wall(), threads);
-        REQUIRE(search.planner.best());
-        asked.push_back(search.planner.best()->cost);
-        asked.push_back(static_cast<double>(search.planner.statistics().ticks));
+        REQUIRE(search.planner.search().best());
+        asked.push_back(search.planner.search().best()->cost);
+        asked.push_back(static_cast<double>(search.planner.search().statistics().ticks));
         return asked;
     };
     const std::vector<double> alone = asked_with(1);
@@ -102,10 +102,10 @@ TEST_CASE(
         CAPTURE(iterations);
         const Search search(iterations, Search::accept_all, with_wall());
         const auto& holds = search.tree().holds();
-        REQUIRE(search.planner.best().has_value() == !holds.empty());
+        REQUIRE(search.planner.search().best().has_value() == !holds.empty());
         with_plan += holds.empty() ? 0 : 1;
         for (const auto* hold : holds) {
-            CHECK(search.planner.best()->cost <= hold->cost * (1 + 1e-6));
+            CHECK(search.planner.search().best()->cost <= hold->cost * (1 + 1e-6));
         }
     }
     CHECK(with_plan > 10);
@@ -121,8 +121,8 @@ TEST_CASE("a plan that was accepted stays, although cheaper ones are rejected") 
     };
     const Search search(200, only_the_first);
     REQUIRE(asked > 1);
-    REQUIRE(search.planner.best());
-    CHECK(search.planner.best()->cost == accepted);
+    REQUIRE(search.planner.search().best());
+    CHECK(search.planner.search().best()->cost == accepted);
 }
 
 TEST_CASE("a search whose time is over flies a few plans more, not all that it found") {
@@ -141,7 +141,7 @@ TEST_CASE("a search whose time is over flies a few plans more, not all that it f
             asked_in_time = is_over ? asked_in_time : asked;
             return is_over;
         });
-    CHECK_FALSE(search.planner.best());
+    CHECK_FALSE(search.planner.search().best());
     CHECK(asked > asked_in_time);
     CHECK(asked - asked_in_time <= 5);  // one of them in the round that was under way
     const auto& holds = search.tree().holds();
@@ -179,7 +179,7 @@ TEST_CASE("a solution is handed to the problem definition with its cost, every m
     REQUIRE(path->getStateCount() >= 3);
     CHECK(planning::is_same_moment(planning::point_of(path->getState(0)), planning::start_point(search.task)));
     CHECK(path->cost(search.ompl.definition->getOptimizationObjective()).value() ==
-          Approx(search.planner.best()->cost).epsilon(1e-12));
+          Approx(search.planner.search().best()->cost).epsilon(1e-12));
     CHECK(search.ompl.definition->getGoal()->isSatisfied(path->getStates().back()));
     CHECK(path->check());
     std::vector<planning::FlightPoint> moments;
@@ -194,34 +194,34 @@ TEST_CASE("a search that is over before it found a plan says how near it came") 
     REQUIRE(search.solve(6) == ompl::base::PlannerStatus::APPROXIMATE_SOLUTION);
     CHECK_FALSE(search.ompl.definition->hasExactSolution());
     CHECK(search.ompl.definition->hasApproximateSolution());
-    CHECK(search.ompl.definition->getSolutionDifference() == search.planner.growth().nearest_distance_m());
+    CHECK(search.ompl.definition->getSolutionDifference() == search.planner.search().growth().nearest_distance_m());
 }
 
 TEST_CASE("a search that is resumed keeps its tree and its best plan") {
     AsPlanner search;
     REQUIRE(search.solve(2000) == ompl::base::PlannerStatus::EXACT_SOLUTION);
-    const double cost = search.planner.best()->cost;
+    const double cost = search.planner.search().best()->cost;
     const std::size_t vertices = search.vertices();
-    const std::uint64_t iterations = search.planner.iterations();
+    const std::uint64_t iterations = search.planner.search().iterations();
     REQUIRE(search.solve(4000) == ompl::base::PlannerStatus::EXACT_SOLUTION);
-    CHECK(search.planner.best()->cost < cost);
+    CHECK(search.planner.search().best()->cost < cost);
     CHECK(search.vertices() > vertices);
-    CHECK(search.planner.iterations() > iterations);
+    CHECK(search.planner.search().iterations() > iterations);
 }
 
 TEST_CASE("after clear() a planner does again what it did the first time") {
     AsPlanner search;
-    search.planner.set_max_iterations(200);
+    search.planner.search().set_max_iterations(200);
     const auto run = [&search] {
         search.planner.solve(ompl::base::plannerNonTerminatingCondition());
-        return std::vector<double>{search.planner.best()->cost, static_cast<double>(search.vertices()),
-                                   static_cast<double>(search.planner.statistics().ticks)};
+        return std::vector<double>{search.planner.search().best()->cost, static_cast<double>(search.vertices()),
+                                   static_cast<double>(search.planner.search().statistics().ticks)};
     };
     const std::vector<double> first = run();
     search.planner.clear();
     CHECK(search.vertices() == 0);
-    CHECK_FALSE(search.planner.best());
-    CHECK(search.planner.statistics().ticks == 0);
+    CHECK_FALSE(search.planner.search().best());
+    CHECK(search.planner.search().statistics().ticks == 0);
     search.ompl.definition->clearSolutionPaths();
     CHECK(run() == first);
 }
@@ -279,9 +279,9 @@ TEST_CASE("a parameter changes the search, and its default does not") {
         Problem problem = test::ceiling_problem();
         problem.planner.parameters = std::move(parameters);
         AsPlanner search(problem);
-        search.planner.set_max_iterations(150);
+        search.planner.search().set_max_iterations(150);
         search.planner.solve(ompl::base::plannerNonTerminatingCondition());
-        return search.planner.statistics().ticks;
+        return search.planner.search().statistics().ticks;
     };
     const std::uint64_t usual = ticks_with({});
     CHECK(ticks_with({{"batch_size", 32}, {"optimism", 0.9}}) == usual);

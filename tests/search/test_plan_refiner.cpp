@@ -62,17 +62,19 @@ TEST_CASE(
         f.refiner.improve();
     }
     const planning::FlownPlan& flown = *f.refiner.best();
-    const Plan plan = planning::plan_through(f.refiner.moments_of(flown), f.model->tick().tick_s);
+    const Plan plan = planning::plan_through(f.refiner.moments_of(flown), f.task.blank_plan);
     FlightState state = start_state(*f.model, f.problem.start);
     for (std::size_t i = 1; i < plan.reference.size(); ++i) {
         const ReferenceSegment segment(plan.reference[i - 1].point, plan.reference[i].point,
                                        plan.reference[i].tick - plan.reference[i - 1].tick, plan.tick_s);
         CHECK(keeps_limits(segment, f.flights.limits()));
-        CHECK(fly(*f.model, f.map.get(), f.flights.rules(), segment, state).rejection == Rejection::none);
+        CHECK(fly(*f.model, f.map.get(), planning::planning_rules(f.problem, true, {}), segment, state).rejection ==
+              Rejection::none);
         CHECK(is_same(state, flown.fleets[i][0]));
     }
     const FlightLeg hold = f.flights.hold_leg(plan.reference.back().point);
-    CHECK(fly(*f.model, f.map.get(), f.flights.rules(), hold.segment, state).rejection == Rejection::none);
+    CHECK(fly(*f.model, f.map.get(), planning::planning_rules(f.problem, true, {}), hold.segment, state).rejection ==
+          Rejection::none);
     CHECK(state.plant.energy_j == flown.cost);
     CHECK(meets_goal(f.problem.goal, f.model->tick().plant, state));
 }

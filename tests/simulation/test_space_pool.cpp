@@ -28,18 +28,10 @@ std::vector<std::pair<Instructions, int>> ways_to_fly() {
     return ways;
 }
 
-bool is_same(const AnySpaceState& a, const AnySpaceState& b) {
-    const auto are_equal = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
-    return are_equal(a.plant, b.plant) && are_equal(a.memory, b.memory) && are_equal(a.world.past, b.world.past) &&
-           are_equal(a.world.gust, b.world.gust) &&
-           std::equal(a.world.older.begin(), a.world.older.end(), b.world.older.begin(), b.world.older.end(),
-                      are_equal);
-}
-
 bool is_same(const SpaceFlightLeg& a, const SpaceFlightLeg& b) {
     return a.flight.rejection == b.flight.rejection && a.flight.ticks == b.flight.ticks &&
            a.flight.max_tracking_error_m == b.flight.max_tracking_error_m &&
-           a.flight.max_saturation == b.flight.max_saturation && is_same(a.end, b.end);
+           a.flight.max_saturation == b.flight.max_saturation && downwash::is_same(a.end, b.end);
 }
 
 bool is_same(const SpaceFlightJob& a, const SpaceFlightJob& b) {
@@ -212,7 +204,7 @@ TEST_CASE("a job in space depends neither on the others nor on their order, nor 
         for (const SpaceFlightLeg& leg : expected[i].legs) {
             part.legs = std::vector<SpaceFlightLeg>{{leg.segment}};
             SpacePool(setup).fly({&part, 1});
-            REQUIRE(is_same(part.end(), leg.end));
+            REQUIRE(downwash::is_same(part.end(), leg.end));
             part.start = part.end();
             part.first_tick += leg.segment.ticks();
         }
@@ -414,7 +406,7 @@ TEST_CASE("a job in space may end before its first tick, and margins count") {
     const SpaceFlightJob too_near = flown_from(start);
     CHECK(too_near.rejection() == Rejection::collision);
     CHECK(too_near.legs[0].flight.ticks == 0);
-    CHECK(is_same(too_near.legs[0].end, too_near.start));
+    CHECK(downwash::is_same(too_near.legs[0].end, too_near.start));
     setup.margin_m = 0.04;
     const SpaceFlightJob rising = flown_from(start);
     CHECK(rising.rejection() == Rejection::collision);
@@ -489,4 +481,71 @@ TEST_CASE("chains of jobs in space, and flights that are ended from outside") {
     if (long_arm.joints() > max_built_joints()) {
         CHECK(error_of([&] { SpacePool(SpacePoolSetup{long_arm}); }).find("DOWNWASH_MAX_JOINTS") != std::string::npos);
     }
+}
+
+TEST_CASE("a planned flight in space keeps its bounds, its joints' limits, and what else it is asked to keep") {
+    SpaceRobot robot = space_robot(2);
+    for (SpaceLinkLimits& link : robot.links) {
+        link.is_limited = true;
+        link.lower_limit_rad = -1;
+        link.upper_limit_rad = 1;
+    }
+    const SpaceChecker checker(std::make_shared<const Scene>(std::vector<Obstacle>{}), shape_of(robot));
+    const SpacePlan plan = space_plan(2);
+    SpacePoolSetup setup{robot};
+    setup.checker = &checker;
+    SpacePlanningRules wide;
+    wide.low_m = {-5, -5, 0};
+    wide.high_m = {5, 5, 5};
+    wide.max_tracking_error_m = 1;
+    wide.max_saturation = 2;
+    const auto rejection = [&](const SpacePlanningRules& rules) {
+        setup.rules = rules;
+        SpacePool pool(setup);
+        SpaceFlightJob job{pool.state_at(motion_at_rest(plan.reference.front().point)), {}};
+        for (const SpaceSegment& segment : plan.segments()) {
+            job.legs.push_back({segment});
+        }
+        pool.fly(std::span(&job, 1));
+        return job.rejection();
+    };
+    CHECK(rejection(wide) == Rejection::none);
+    SpacePlanningRules narrow = wide;
+    narrow.high_m[0] = 1.1;  // the plan leads to 1.2 m
+    CHECK(rejection(narrow) == Rejection::bounds);
+    SpacePlanningRules exact = wide;
+    exact.max_tracking_error_m = 1e-6;
+    CHECK(rejection(exact) == Rejection::tracking);
+    SpacePlanningRules idle = wide;
+    idle.max_saturation = 1e-6;
+    CHECK(rejection(idle) == Rejection::saturation);
+    robot.links[0].upper_limit_rad = 0.4;  // the plan leads to 0.6 rad
+    CHECK(rejection(wide) == Rejection::arm_limits);
+}
+
+TEST_CASE("a flight in space that hovers where its goal is not, or is not yet slow enough, misses it") {
+    const SpaceRobot robot = space_robot(1);
+    const auto scene = std::make_shared<const Scene>(std::vector<Obstacle>{});
+    SpaceGoal goal;
+    SpaceConfigurationGoal at;
+    at.x_m = 1;
+    at.z_m = 2;
+    goal.kind = at;
+    const SpaceGoalRule rule(robot, scene, {goal});
+    SpacePoolSetup setup{robot};
+    setup.goal = &rule;
+    SpacePool pool(setup);
+    const auto rejection_at = [&](double x_m, std::int64_t hover_ticks) {
+        SpacePoint from, to;
+        from.position[space::z] = to.position[space::z] = 2;
+        to.position[space::x] = x_m;
+        SpaceFlightJob job{pool.state_at(motion_at_rest(from)),
+                           {{{from, to, 400, 0.01}}, {{to, to, hover_ticks, 0.01}}}};
+        job.judged_ticks = 100;
+        pool.fly(std::span(&job, 1));
+        return job.rejection();
+    };
+    CHECK(rejection_at(1, 500) == Rejection::none);
+    CHECK(rejection_at(1.3, 500) == Rejection::goal_missed);
+    CHECK(rejection_at(1, 100) == Rejection::goal_missed);  // it still settles
 }

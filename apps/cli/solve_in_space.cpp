@@ -1,0 +1,140 @@
+#include <fmt/core.h>
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "downwash/cli/common_options.hpp"
+#include "downwash/cli/in_space.hpp"
+#include "downwash/cli/interruption.hpp"
+#include "downwash/cli/output.hpp"
+#include "downwash/cli/progress.hpp"
+#include "downwash/cli/results.hpp"
+#include "downwash/cli/run_folder.hpp"
+#include "downwash/cli/run_report.hpp"
+#include "downwash/planner/space_solve.hpp"
+#include "downwash/problems/cut_off_goals.hpp"
+#include "downwash/problems/space_problem_model.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
+#include "downwash/results/space_solution_file.hpp"
+
+namespace downwash::cli {
+namespace {
+
+std::string announcement(const SpaceProblem& problem) {
+    const PlannerSettings& planner = problem.planner;
+    return fmt::format("{}: planning in space with {} {}, objective {}, seed {}", problem.name,
+                       name_of(planner.variant), planner.algorithm, text_of(planner.objective), planner.seed);
+}
+
+/// What stood before the goal, for people.
+std::string obstruction_text(const SpaceSearchResult& search) {
+    std::string text = search.plan ? "The plan does not reach the goal" : "There is no plan";
+    if (search.missed_goal) {
+        text += fmt::format(" (goal {})", *search.missed_goal);
+    }
+    if (const auto& obstruction = search.obstruction) {
+        text += fmt::format(": {}", obstruction->cause);
+        if (!obstruction->obstacles.empty()) {
+            text += " near " + quoted_labels(obstruction->obstacles);
+        }
+    }
+    return text + ".";
+}
+
+std::string verdict_on(const SpaceSearchResult& search, const SpaceSolution& solution) {
+    if (search.status == Status::solved && solution.execution) {
+        return verdict_on_outcome(solution.execution->outcome, solution.aero, "reaches the goal and hovers there.");
+    }
+    return obstruction_text(search);
+}
+
+std::string rows_of(const SpaceSearchResult& search) {
+    const SearchRecord& record = search.planning;
+    std::string text;
+    if (const auto& certificate = search.certificate) {
+        text +=
+            table_row("certificate", fmt::format("{}: {} of {} worlds fail, failure probability at most {:.4g}",
+                                                 certificate->is_given ? "given" : "not given", certificate->failures,
+                                                 certificate->worlds, certificate->failure_probability.high));
+    }
+    std::string times = fmt::format("{:.2f} s, {} iterations", record.wall_s, record.iterations);
+    if (record.first_solution_wall_s) {
+        times += fmt::format(", first plan after {:.2f} s", *record.first_solution_wall_s);
+    }
+    if (record.first_certified_wall_s) {
+        times += fmt::format(", first certified after {:.2f} s", *record.first_certified_wall_s);
+    }
+    text += table_row("search", times);
+    if (!record.stopped_by.empty()) {
+        text += table_row("edges stopped by", most_stopping(record.stopped_by));
+    }
+    return text;
+}
+
+SpaceSolution solution_of(const SpaceProblem& problem, std::shared_ptr<const SpaceSearchResult> search, int threads) {
+    SpaceSolution solution;
+    solution.status = search->status;
+    solution.interrupted = search->interrupted;
+    solution.variant = problem.planner.variant;
+    solution.algorithm = problem.planner.algorithm;
+    solution.objective = problem.planner.objective;
+    solution.seed = problem.planner.seed;
+    solution.threads = threads;
+    solution.joints = problem.robot.joints();
+    solution.plan = search->plan;
+    solution.execution = search->execution;
+    solution.aero = problem.aero.enabled;
+    solution.search = std::move(search);
+    return solution;
+}
+
+}  // namespace
+
+ExitCode solve_in_space(const SolveInSpace& given) {
+    Interruption interruption(given.limits);
+    std::vector<LocatedError> warnings;
+    const SpaceProblem problem = read_space_problem(
+        given.problem, [&given](SpaceProblem& settings) { given.planner.apply_to(settings); },
+        noting(warnings, given.is_quiet), space_planning_errors);
+    const std::filesystem::path out =
+        given.out ? std::filesystem::path(*given.out) : default_folder(problem.name, problem.planner);
+    RunFolder folder = claimed_folder(out, problem, given.problem, given.force);
+    const auto model = std::make_shared<const SpaceProblemModel>(problem);
+
+    SpaceSolveOptions options;
+    options.threads = given.threads;
+    options.stop_at_first_solution = given.stop_at_first;
+    options.keep_tree = true;
+    options.stop = interruption.token();
+    options.map_cache = cache_folder(given.no_cache);
+    interruption.expect_results();
+    std::shared_ptr<const SpaceSearchResult> search;
+    {
+        ProgressDisplay display(given.is_quiet);
+        display.say(announcement(problem));
+        options.on_progress = [&](const Progress& progress) { display.show(progress); };
+        search = std::make_shared<const SpaceSearchResult>(downwash::solve(model, options));
+    }
+    const SpaceSolution solution = solution_of(problem, search, given.threads);
+    const SpaceRunRecord record =
+        folder.write(problem, given.problem, warnings, solution, input_facts(problem, model->scene()));
+    if (solution.execution) {
+        write_page(folder.path(), record);
+    }
+    if (given.as_json) {
+        fmt::print("{}", record.solution_text);
+    } else {
+        fmt::print("{}{}", space_summary(verdict_on(*search, solution), solution, rows_of(*search)),
+                   file_rows(folder.path(), "solution.json, trajectory.csv, tree.csv, effective.yaml"));
+    }
+    if (interruption.code() != ExitCode::done) {
+        return interruption.code();
+    }
+    const bool is_good = solution.status == Status::solved && solution.execution->outcome == Outcome::ok;
+    return is_good                             ? ExitCode::done
+           : solution.status == Status::solved ? ExitCode::flight_failed
+                                               : ExitCode::no_solution;
+}
+
+}  // namespace downwash::cli

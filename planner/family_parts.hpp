@@ -1,0 +1,88 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "downwash/base/stop_condition.hpp"
+#include "downwash/planner/direct_flight.hpp"
+#include "downwash/planner/planner_model.hpp"
+#include "downwash/planner/safe_stops.hpp"
+#include "downwash/planner/world_flights.hpp"
+#include "downwash/problems/objective.hpp"
+#include "downwash/search/search_task.hpp"
+
+// What the planner asks of problems, plans and flights of both families.
+
+namespace downwash {
+
+/// All goals in the order of the file.
+[[nodiscard]] inline const std::vector<SpaceGoal>& goals_of(const SpaceProblem& problem) noexcept {
+    return problem.goals;
+}
+
+}  // namespace downwash
+
+namespace downwash::planning {
+
+/// A problem with a single goal, from where a plan before ends; without knots, from its own start.
+[[nodiscard]] Problem part_of(const Problem& problem, const Goal& goal, const Plan& before);
+[[nodiscard]] SpaceProblem part_of(const SpaceProblem& problem, const SpaceGoal& goal, const SpacePlan& before);
+
+/// The goal of a problem that has one.
+[[nodiscard]] inline const Goal& goal_of(const Problem& part) noexcept {
+    return part.goal;
+}
+[[nodiscard]] inline const SpaceGoal& goal_of(const SpaceProblem& part) noexcept {
+    return part.goals.front();
+}
+
+/// What flights may take [J]; empty: any. Problems in space have no budget.
+[[nodiscard]] inline std::optional<double> energy_budget_of(const Problem& problem) noexcept {
+    return problem.energy_budget_j;
+}
+[[nodiscard]] inline std::optional<double> energy_budget_of(const SpaceProblem& /*problem*/) noexcept {
+    return std::nullopt;
+}
+
+/// Where a plan ends. @pre there is a knot
+[[nodiscard]] inline Configuration end_of(const Plan& plan) {
+    return plan.last();
+}
+[[nodiscard]] inline SpaceConfiguration end_of(const SpacePlan& plan) {
+    return configuration_of(plan.reference.back().point);
+}
+
+/// A plan and the hover at its last goal, which ends at a knot of its own.
+[[nodiscard]] SpacePlan with_hover(const SpacePlan& plan, const SpaceGoal& goal, const SpaceProblemModel& model);
+
+/// The vehicle at the end of a plan that is flown on from one of its knots in the planner's own model, or where the
+/// flight ended.
+/// @param first the knot at which the vehicle is   @throws std::logic_error if the flight is rejected
+[[nodiscard]] FlightState flown_on(const PlannerModel& model, const Plan& plan, std::size_t first, FlightState vehicle);
+[[nodiscard]] AnySpaceState flown_on(const PlannerModelOf<Space>& model, const SpacePlan& plan, std::size_t first,
+                                     const AnySpaceState& vehicle);
+
+/// Executes a plan in space with direct aerodynamics, from the problem's start through the first goals; see
+/// fly_directly() of the plane.
+[[nodiscard]] DirectFlightOf<Space> fly_directly(const SpaceProblemModel& model, const AnySpaceState& start,
+                                                 const SpacePlan& plan, const std::vector<SpaceGoal>& goals,
+                                                 std::optional<double> energy_budget_j, const StopCondition& is_over);
+
+/// Whether a plan counts after its direct flight.
+[[nodiscard]] bool is_good(const SpaceFlight& flight, double safety_margin_m);
+
+/// What an executed flight costs.
+[[nodiscard]] double cost_when_executed(const Execution& flight, const CostFunction& objective);
+[[nodiscard]] double cost_when_executed(const SpaceFlight& flight, const CostFunction& objective);
+
+/// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
+[[nodiscard]] Obstruction obstruction_of(const Execution& flight, const SearchTask& task);
+[[nodiscard]] SpaceObstruction obstruction_of(const SpaceFlight& flight, const SearchTaskOf<Space>& task);
+
+/// Safe stops are not looked for in space yet.
+class NoStopFinder {
+ public:
+    [[nodiscard]] SafeStops along(const SpacePlan& /*plan*/, const StopCondition& /*is_over*/) { return {}; }
+};
+
+}  // namespace downwash::planning

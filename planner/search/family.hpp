@@ -1,0 +1,89 @@
+#pragma once
+
+#include "downwash/controllers/plan.hpp"
+#include "downwash/controllers/space_configuration.hpp"
+#include "downwash/problems/problem_model.hpp"
+#include "downwash/problems/space_problem_model.hpp"
+#include "downwash/search/search_record.hpp"
+#include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/flight_job.hpp"
+#include "downwash/simulation/space_flight_job.hpp"
+#include "downwash/simulation/surface_volumes.hpp"
+
+// There is one search, for vehicles in a plane of motion and in space. What it works on are the types of a family.
+// Functions that it calls on them (configuration_of(), at_rest(), keeps_limits(), ...) are overloaded for both.
+
+namespace downwash::planning {
+
+class SearchSpace;
+class SpaceSearchSpace;
+class PassageSampler;
+class NoPassages;
+class ProblemWorlds;
+class SpaceProblemWorlds;
+class StopFinder;
+class NoStopFinder;
+
+/// Vehicles in a vertical plane.
+struct Plane {
+    using Problem = downwash::Problem;
+    using Goal = downwash::Goal;
+    using FlightModel = downwash::FlightModel;
+    using Effects = AeroMap;  ///< of surfaces
+    using Configuration = downwash::Configuration;
+    using ReferencePoint = downwash::ReferencePoint;
+    using ReferenceSegment = downwash::ReferenceSegment;
+    using Plan = downwash::Plan;
+    using MotionLimits = downwash::MotionLimits;
+    using Pose = PlanarPose;
+    using FlightState = downwash::FlightState;
+    using FlownWorld = downwash::FlownWorld;
+    using FlightWorld = downwash::FlightWorld;
+    using SegmentFlight = downwash::SegmentFlight;
+    using FlightLeg = downwash::FlightLeg;
+    using FlightJob = downwash::FlightJob;
+    using FlightChain = downwash::FlightChain;
+    using Obstruction = downwash::Obstruction;
+    using TreeNode = downwash::TreeNode;
+    using SearchSpace = planning::SearchSpace;
+    using PassageSampler = planning::PassageSampler;
+    using Execution = downwash::Execution;  ///< with direct aerodynamics
+    using ProblemWorlds = planning::ProblemWorlds;
+    using StopFinder = planning::StopFinder;
+};
+
+/// A world in space, and the control tick with which a flight in it begins.
+struct SpaceFlightWorld {
+    const SpaceWorld* world = nullptr;  ///< nullptr: the nominal one
+    std::int64_t first_tick = 0;
+};
+
+/// Vehicles in space with any number of joints.
+struct Space {
+    using Problem = SpaceProblem;
+    using Goal = SpaceGoal;
+    using FlightModel = SpaceProblemModel;
+    using Effects = SurfaceVolumes;
+    using Configuration = SpaceConfiguration;
+    using ReferencePoint = SpacePoint;
+    using ReferenceSegment = SpaceSegment;
+    using Plan = SpacePlan;
+    using MotionLimits = SpaceMotionLimits;
+    using Pose = SpacePose;
+    using FlightState = AnySpaceState;
+    using FlownWorld = SpaceWorld;
+    using FlightWorld = SpaceFlightWorld;
+    using SegmentFlight = SpaceSegmentFlight;
+    using FlightLeg = SpaceFlightLeg;
+    using FlightJob = SpaceFlightJob;
+    using FlightChain = SpaceFlightChain;
+    using Obstruction = SpaceObstruction;
+    using TreeNode = SpaceTreeNode;
+    using SearchSpace = SpaceSearchSpace;
+    using PassageSampler = NoPassages;
+    using Execution = SpaceFlight;
+    using ProblemWorlds = SpaceProblemWorlds;
+    using StopFinder = NoStopFinder;
+};
+
+}  // namespace downwash::planning

@@ -1,0 +1,246 @@
+#include "downwash/search/space_search_space.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <variant>
+
+#include "downwash/base/infinity.hpp"
+#include "downwash/controllers/space_duration.hpp"
+#include "downwash/scene/space_motion.hpp"
+#include "downwash/simulation/space_pool.hpp"
+#include "downwash/simulation/space_tool.hpp"
+
+namespace downwash::planning {
+namespace {
+
+std::vector<SearchAxis> search_axes(const SpaceProblem& problem, double reach_m) {
+    const SpaceMotionLimits& motion = problem.motion;
+    const auto axis = [&](AxisGroup group, double low, double high, double axis_reach_m, bool wraps, int number) {
+        const double weight_m = group == AxisGroup::translation ? 1 : 0.5 * axis_reach_m;
+        return SearchAxis{group,
+                          low,
+                          high,
+                          weight_m,
+                          wraps,
+                          axis_reach_m,
+                          max_rate(motion, number),
+                          max_acceleration(motion, number)};
+    };
+    std::vector<SearchAxis> axes;
+    for (std::size_t i = 0; i < 3; ++i) {
+        axes.push_back(axis(AxisGroup::translation, problem.bounds.low_m[i], problem.bounds.high_m[i], 1, false,
+                            static_cast<int>(i)));
+    }
+    axes.push_back(axis(AxisGroup::yaw, -std::numbers::pi, std::numbers::pi, reach_m, true, space::yaw));
+    for (std::size_t i = 0; i < problem.robot.links.size(); ++i) {
+        const SpaceLinkLimits& link = problem.robot.links[i];
+        axes.push_back(axis(AxisGroup::joint, link.is_limited ? link.lower_limit_rad : -std::numbers::pi,
+                            link.is_limited ? link.upper_limit_rad : std::numbers::pi, reach_m, !link.is_limited,
+                            space::first_joint + static_cast<int>(i)));
+    }
+    return axes;
+}
+
+std::span<const SpaceGoal> alternatives(const SpaceGoal& goal) noexcept {
+    return goal.any_of.empty() ? std::span(&goal, 1) : std::span(goal.any_of);
+}
+
+}  // namespace
+
+SpacePoint reference_at(const SpaceStart& start) noexcept {
+    const SpaceMotion motion = start_motion(start);
+    SpacePoint point = at_rest(configuration_of(motion));
+    if (!start.attitude) {
+        point.position[space::yaw] = start.yaw_rad;
+    }
+    std::ranges::copy(motion.velocity_m_s, point.velocity);
+    std::ranges::copy(motion.joint_rates_rad_s, point.velocity + space::first_joint);
+    return point;
+}
+
+AnySpaceState start_state(const SpaceProblemModel& model, const SpaceStart& start) {
+    return SpacePool(SpacePoolSetup{model.problem().robot}).state_at(start_motion(start));
+}
+
+SpaceSearchSpace::SpaceSearchSpace(const SpaceProblem& problem, const SpaceProblemModel& model)
+    : SearchAxesOf<Space>(search_axes(problem, model.collisions().robot_reach_m())),
+      model_(model),
+      rule_(problem.robot, model.shared_scene(), {problem.goals.front()}),
+      sampler_(problem.robot, problem.bounds, model.shared_scene(), model.collisions(), problem.planner.safety_margin_m,
+               problem.goals.front()),
+      limits_(problem.motion),
+      start_(place_of(problem.start)),
+      margin_m_(problem.planner.safety_margin_m),
+      reach_m_(model.collisions().robot_reach_m()) {}
+
+double SpaceSearchSpace::duration_s(const Configuration& from, const Configuration& to) const noexcept {
+    double along[space_axes<max_joints>] = {};
+    for (std::size_t i = 0; i < axes().size(); ++i) {
+        along[i] = way(i, from[i], to[i]);
+    }
+    return rest_to_rest_duration_s(along, limits_along(limits_, along));
+}
+
+double SpaceSearchSpace::duration_at_limits_s(const Configuration& from, const Configuration& to) const noexcept {
+    double longest_s = travel_m(from, to) / limits_.max_speed_m_s;
+    for (std::size_t i = space::yaw; i < axes().size(); ++i) {
+        longest_s = std::max(longest_s, std::abs(way(i, from[i], to[i])) / axes()[i].max_rate);
+    }
+    return longest_s;
+}
+
+double SpaceSearchSpace::distance_m(const Configuration& a, const Configuration& b) const noexcept {
+    return duration_s(a, b) * limits_.max_speed_m_s / peak_over_mean_speed;
+}
+
+double SpaceSearchSpace::squared_distance_m2(const Configuration& a, const Configuration& b,
+                                             double /*enough_m2*/) const noexcept {
+    const double distance = distance_m(a, b);
+    return distance * distance;
+}
+
+SpaceConfiguration SpaceSearchSpace::steered(const Configuration& from, const Configuration& to, double range_m) const {
+    const Configuration target = seen_from(from, to);
+    const double distance = distance_m(from, target);
+    return distance <= range_m ? target : between(from, target, range_m / distance);
+}
+
+SpaceConfiguration SpaceSearchSpace::sample_in_transport(Random& random) const {
+    Configuration c = sample(random);
+    std::copy(start_.begin() + space::first_joint, start_.end(), c.begin() + space::first_joint);
+    return c;
+}
+
+SpaceGoalError SpaceSearchSpace::error(const SpaceGoal& goal, const Configuration& c) const {
+    return goal_error(goal, model_.problem().robot, level_at(c), model_.scene());
+}
+
+std::optional<SpaceConfiguration> SpaceSearchSpace::sample_goal(Random& random) const {
+    // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance.
+    const double share = random.chance(0.5) ? 0 : usable_tolerance_share * random.uniform(0, 1);
+    const SpaceGoalSample drawn = sampler_.sample(random, share);
+    return drawn.place ? std::optional(drawn.place->at) : std::nullopt;
+}
+
+std::optional<SpaceConfiguration> SpaceSearchSpace::nearest_at_goal(const Configuration& to, double share,
+                                                                    bool may_have_flaws) const {
+    const auto metric = [this](const Configuration& a, const Configuration& b) { return distance_m(a, b); };
+    const std::optional<SpaceGoalPlace> place = sampler_.nearest(to, metric, share);
+    if (!place || (!may_have_flaws && sampler_.flaw(*place) != SpaceGoalFlaw::none)) {
+        return std::nullopt;
+    }
+    return place->at;
+}
+
+std::optional<SpaceConfiguration> SpaceSearchSpace::sample_goal_near(const Configuration& configuration,
+                                                                     double radius_m, Random& random) const {
+    const Configuration near = sample_near(configuration, radius_m, random);
+    return nearest_at_goal(near, usable_tolerance_share * random.uniform(0, 1), false);
+}
+
+SpaceConfiguration SpaceSearchSpace::moved_into_goal(Configuration c, double share) const {
+    return nearest_at_goal(c, share, true).value_or(c);
+}
+
+SpaceGoalError SpaceSearchSpace::error(const Configuration& c) const {
+    return rule_.error({}, resting_at(c));
+}
+
+std::int64_t SpaceSearchSpace::hold_ticks(const SpacePoint& at) const {
+    const SpacePlan plan{{{0, at}}, 1 / model_.problem().robot.controller.rate_hz, model_.problem().robot.joints()};
+    return rule_.hovers(plan).front().end_tick;
+}
+
+bool SpaceSearchSpace::is_near_goal(const Configuration& c) const {
+    const SpaceGoalError off = error(c);
+    return off.used_share <= usable_tolerance_share + 1e-6 && !off.is_hidden;
+}
+
+double SpaceSearchSpace::goal_distance_m(const Configuration& c) const {
+    if (is_near_goal(c)) {
+        return 0;
+    }
+    const SpaceGoalError off = error(c);
+    return off.distance_m + 0.5 * reach_m_ * off.angle_rad;
+}
+
+bool SpaceSearchSpace::is_met(const AnySpaceState& vehicle) const {
+    const SpaceMotion motion = motion_of(vehicle);
+    return meets_goal(rule_.error({}, motion), motion);
+}
+
+std::vector<SpaceSearchSpace::Approach> SpaceSearchSpace::approaches(const Configuration& from) const {
+    // No point of the robot is faster than the vehicle, and turns it and every joint about a point within its reach.
+    double tool_speed_m_s = limits_.max_speed_m_s;
+    for (std::size_t i = space::yaw; i < axes().size(); ++i) {
+        tool_speed_m_s += 2 * reach_m_ * axes()[i].max_rate;
+    }
+    std::vector<Approach> all;
+    for (const SpaceGoal& goal : alternatives(this->goal())) {
+        const SpaceGoalError off = error(goal, from);
+        if (const auto* at = std::get_if<SpaceConfigurationGoal>(&goal.kind)) {
+            const double way_m = std::max(0.0, off.distance_m - at->tolerance_m);
+            double longest_s = way_m / limits_.max_speed_m_s;
+            if (at->yaw_rad) {
+                const double turn_rad = std::abs(way(space::yaw, from[space::yaw], *at->yaw_rad)) - at->tolerance_rad;
+                longest_s = std::max(longest_s, turn_rad / limits_.max_yaw_rate_rad_s);
+            }
+            for (std::size_t i = 0; i < at->joints_rad.size(); ++i) {
+                const std::size_t axis = space::first_joint + i;
+                const double turn_rad = std::abs(way(axis, from[axis], at->joints_rad[i])) - at->tolerance_rad;
+                longest_s = std::max(longest_s, turn_rad / axes()[axis].max_rate);
+            }
+            all.push_back({way_m, longest_s, goal.hold_s});
+            continue;
+        }
+        double tolerance_m = 0;
+        if (const auto* tool = std::get_if<SpaceEndEffectorGoal>(&goal.kind)) {
+            tolerance_m = tool->tolerance_m;
+        } else if (const auto* pose = std::get_if<SpacePoseGoal>(&goal.kind)) {
+            tolerance_m = pose->tolerance_m;
+        }
+        const double way_m = std::max(0.0, off.distance_m - tolerance_m);
+        all.push_back({std::max(0.0, way_m - 2 * reach_m_), way_m / tool_speed_m_s, goal.hold_s});
+    }
+    return all;
+}
+
+Rejection SpaceSearchSpace::rejection_at(const Configuration& c, const SpacePose& pose) const {
+    if (const Rejection left = limit_left_at(c); left != Rejection::none) {
+        return left;
+    }
+    return model_.collisions().is_nearer_than(pose, margin_m_) ? Rejection::collision : Rejection::none;
+}
+
+SpacePose SpaceSearchSpace::pose_along(const SpacePoint& point, bool tilts) const {
+    SpacePose pose = level_at(configuration_of(point));
+    if (!tilts) {
+        return pose;
+    }
+    // The shortest turn from the vertical to a + g, after the heading.
+    Vector3 force{point.acceleration[0], point.acceleration[1], point.acceleration[2] + standard_gravity_m_s2};
+    const double length = std::sqrt(dot(force, force));
+    if (!(length > 0)) {
+        return pose;
+    }
+    force = (1 / length) * force;
+    const std::array<double, 4> tilt = normalised({1 + force[2], -force[1], force[0], 0});
+    const double c = pose.attitude[0], s = pose.attitude[3];
+    if (force[2] > -1) {
+        pose.attitude = {tilt[0] * c, tilt[1] * c + tilt[2] * s, tilt[2] * c - tilt[1] * s, tilt[0] * s};
+    }
+    return pose;
+}
+
+double SpaceSearchSpace::extent_m() const noexcept {
+    Configuration low{}, high{};
+    for (std::size_t i = 0; i < axes().size(); ++i) {
+        low[i] = axes()[i].wraps ? 0 : axes()[i].low;
+        high[i] = axes()[i].wraps ? std::numbers::pi : axes()[i].high;
+    }
+    return distance_m(low, high);
+}
+
+}  // namespace downwash::planning

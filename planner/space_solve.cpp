@@ -1,0 +1,125 @@
+#include "downwash/planner/space_solve.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "downwash/planner/family_parts.hpp"
+#include "downwash/planner/goals_in_order.hpp"
+#include "downwash/planner/planner_model.hpp"
+#include "downwash/planner/stopwatch.hpp"
+
+namespace downwash {
+namespace {
+
+using planning::Space;
+
+bool certifies(const SpaceProblem& problem) {
+    return problem.uncertainty && problem.planner.certify;
+}
+
+/// Whether flights of a search, or of its certificates, are among surfaces.
+bool needs_volumes(const SpaceProblem& problem) {
+    return problem.aero.enabled && (problem.planner.variant == Variant::mp_arm_ada || certifies(problem));
+}
+
+/// Where hubs can be while the multirotor is within the bounds.
+std::shared_ptr<const SurfaceVolumes> volumes_for(const SpaceProblemModel& model, const SpaceSolveOptions& options) {
+    const SpaceProblem& problem = model.problem();
+    if (!needs_volumes(problem)) {
+        return nullptr;
+    }
+    if (options.map) {
+        return options.map;
+    }
+    double reach_m = 0;
+    for (const SpaceRotor& rotor : problem.robot.plant.rotors) {
+        reach_m = std::max(reach_m, std::sqrt(dot(rotor.position_m, rotor.position_m)));
+    }
+    const Vector3& low_m = problem.bounds.low_m;
+    const Vector3& high_m = problem.bounds.high_m;
+    const auto volumes = std::make_shared<SurfaceVolumes>(
+        model.shared_scene(), problem.aero, problem.robot, PlaneOfMotion{},
+        Bounds{low_m[0] - reach_m, high_m[0] + reach_m, low_m[2] - reach_m, high_m[2] + reach_m}, low_m[1] - reach_m,
+        high_m[1] + reach_m);
+    volumes->read(options.map_cache);
+    return volumes;
+}
+
+bool asks_for_contact(const SpaceGoal& goal) {
+    const auto is_contact = [](const SpaceGoal& one) { return std::holds_alternative<SpaceContactGoal>(one.kind); };
+    return goal.any_of.empty() ? is_contact(goal) : std::ranges::any_of(goal.any_of, is_contact);
+}
+
+}  // namespace
+
+std::vector<KeyError> space_planning_errors(const SpaceProblem& problem) {
+    std::vector<KeyError> errors;
+    const PlannerSettings& planner = problem.planner;
+    if (problem.in_any_order && problem.goals.size() > 1) {
+        errors.push_back({"goal.in_any_order", "cannot be planned in space yet: expected goals in an order"});
+    }
+    for (std::size_t i = 0; i < problem.goals.size(); ++i) {
+        if (asks_for_contact(problem.goals[i])) {
+            errors.push_back({problem.goals.size() == 1 ? "goal" : "goal[" + std::to_string(i) + "]",
+                              "asks for contact, for which nothing plans in space yet: expected another goal"});
+        }
+    }
+    if (planner.algorithm != "rrt-star") {
+        errors.push_back(
+            {"planner.algorithm", "is '" + planner.algorithm + "', which does not plan in space: expected rrt-star"});
+    }
+    if (planner.objective.weight(Objective::length) > 0 || planner.objective.weight(Objective::clearance) > 0) {
+        errors.push_back({"planner.objective",
+                          "counts length or clearance, which flights in space do not sum up: expected energy, time or "
+                          "a sum of them"});
+    }
+    if (planner.max_pitch_rate_rad_s) {
+        errors.push_back({"planner.max_pitch_rate_deg_s", "is not kept in space yet: expected no such limit"});
+    }
+    if (const auto share = planner.parameters.find("passage_share");
+        share != planner.parameters.end() && share->second > 0) {
+        errors.push_back({"planner.parameters.passage_share",
+                          "is above 0, and narrow passages are not looked for in space yet: expected 0"});
+    }
+    if (problem.motion.yaw.mode != YawMode::free) {
+        errors.push_back({"motion.yaw", "is a rule that searches do not keep yet: expected free"});
+    }
+    return errors;
+}
+
+SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model, const SpaceSolveOptions& asked) {
+    const planning::Stopwatch since_call;
+    const SpaceProblem& problem = model->problem();
+    SpaceSolveOptions options = asked;
+    options.threads = std::max(1, options.threads);
+    SpaceSearchResult result;
+    const planning::Stopwatch map_clock;
+    const std::shared_ptr<const SurfaceVolumes> volumes = volumes_for(*model, options);
+    result.planning.map_wall_s = volumes ? map_clock.seconds() : 0;
+    const double map_wall_s = result.planning.map_wall_s;
+    const double setup_wall_s = since_call.seconds();
+    try {
+        const planning::PlannerModelOf<Space> own(problem.planner.variant, model, volumes);
+        planning::SearchResultOf<Space> found = planning::search_in_order(problem, own, options);
+        static_cast<FoundOf<Space>&>(result) = std::move(found.found);
+        result.planning = std::move(found.record);
+        result.planning.setup_wall_s = setup_wall_s;
+        result.planning.map_wall_s = map_wall_s;
+        if (result.plan && !(result.execution && result.status == Status::solved)) {
+            planning::DirectFlightOf<Space> flight = planning::fly_directly(
+                *model, {}, *result.plan, problem.goals, std::nullopt, planning::end_of_last_flight(options.stop));
+            result.execution = std::move(flight.execution);
+            result.flight_wall_s = flight.wall_s;
+        }
+    } catch (const WorkStopped&) {  // there is what was found before
+    }
+    if (volumes && !options.map) {
+        volumes->keep(options.map_cache);
+    }
+    result.interrupted = options.stop.stop_requested();
+    return result;
+}
+
+}  // namespace downwash

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "downwash/base/export.hpp"
+#include "downwash/base/key_error.hpp"
+#include "downwash/planner/found.hpp"
+#include "downwash/planner/solve_options.hpp"
+#include "downwash/problems/space_problem.hpp"
+#include "downwash/problems/space_problem_model.hpp"
+
+namespace downwash {
+
+/// How a program takes part in a search in space. Safe stops are not looked for.
+using SpaceSolveOptions = SolveOptionsOf<planning::Space>;
+
+/// What a search in space has found, and how it went.
+struct SpaceSearchResult : FoundOf<planning::Space> {
+    bool interrupted = false;  ///< ended by the stop token
+    SearchRecord planning;
+};
+
+/// What of a sound problem in space cannot be planned yet: goals in any order, contact, objectives that count length or
+/// clearance, other algorithms than rrt-star. Keys are key paths of a problem file. Empty if it can be planned.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> space_planning_errors(const SpaceProblem& problem);
+
+/// Plans, and flies the plan with direct aerodynamics, hold included; see solve() of the plane. The same search finds
+/// plans of both families.
+/// @throws InputError when the vehicle cannot hover at its start in some world of the search
+/// @pre space_planning_errors(model.problem()) is empty
+[[nodiscard]] DOWNWASH_EXPORT SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model,
+                                                      const SpaceSolveOptions& options = {});
+
+}  // namespace downwash

@@ -1,0 +1,330 @@
+#include "downwash/planner/space_worlds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "downwash/base/infinity.hpp"
+#include "downwash/base/key_error.hpp"
+#include "downwash/base/parallel.hpp"
+#include "downwash/planner/certificate_record.hpp"
+#include "downwash/planner/family_parts.hpp"
+#include "downwash/planner/search_quantiles.hpp"
+#include "downwash/simulation/goal.hpp"
+#include "downwash/simulation/noise.hpp"
+#include "downwash/simulation/space_world_parameters.hpp"
+
+namespace downwash::planning {
+namespace {
+
+std::vector<double> quantiles_of_world(const SpaceRobot& robot, std::uint64_t number) {
+    std::vector<DangerQuantiles> dangers;
+    for (const SpaceWorldParameter* parameter : space_world_parameters_of(robot)) {
+        dangers.push_back(parameter->danger);
+    }
+    return search_quantiles(dangers, dangers.size(), number);
+}
+
+std::vector<SpaceWorld> search_worlds(const SpaceProblem& problem) {
+    std::vector<SpaceWorld> worlds;
+    for (std::uint64_t i = 1; i < problem.planner.worlds; ++i) {
+        const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem.planner.seed} ^ simulation::mixed(i));
+        worlds.push_back(
+            space_world_at(*problem.uncertainty, problem.robot, quantiles_of_world(problem.robot, i), tape));
+    }
+    return worlds;
+}
+
+/// From now on a vehicle was always as it is, and has spent no energy. The gusts of its world blow already.
+void forget(AnySpaceState& vehicle, const SpaceWorld& world) {
+    vehicle.plant.energy_j = 0;
+    vehicle.world = {};
+    for (auto& past : vehicle.world.past) {
+        std::ranges::copy(vehicle.plant.q, past.q);
+        std::ranges::copy(vehicle.plant.u, past.u);
+    }
+    if (world.position_noise_m > 0 || world.velocity_noise_m_s > 0 || world.gyro_noise_rad_s > 0 ||
+        world.gust_m_s > 0) {
+        simulation::start_gusts(world.tape, vehicle.world.gust);
+    }
+}
+
+/// The legs of a plan from one of its knots to another.
+std::vector<SpaceFlightLeg> legs_of(const SpacePlan& plan, std::size_t first, std::size_t last) {
+    std::vector<SpaceFlightLeg> legs;
+    for (std::size_t knot = first + 1; knot <= last; ++knot) {
+        legs.push_back({plan.segment_to(knot)});
+    }
+    return legs;
+}
+
+/// Lets flights ask a condition as long as a call goes on.
+class Asking {
+ public:
+    Asking(StopCondition& asked, const StopCondition& condition) : asked_(asked) { asked_ = condition; }
+    ~Asking() { asked_ = nullptr; }
+    Asking(const Asking&) = delete;
+    Asking& operator=(const Asking&) = delete;
+
+ private:
+    StopCondition& asked_;
+};
+
+}  // namespace
+
+SpaceProblemWorlds::SpaceProblemWorlds(const SpaceProblem& problem, const PlannerModelOf<Space>& model, int threads)
+    : problem_(problem),
+      model_(model),
+      threads_(threads),
+      among_surfaces_(problem.goals.size()),
+      own_(problem.goals.size()) {
+    for (const SpaceGoal& goal : problem.goals) {
+        rules_.push_back(
+            std::make_unique<SpaceGoalRule>(problem.robot, model.flight->shared_scene(), std::vector<SpaceGoal>{goal}));
+    }
+}
+
+SpacePool& SpaceProblemWorlds::pool(std::size_t goal, bool among_surfaces) {
+    auto& pools = among_surfaces ? among_surfaces_ : own_;
+    const auto& map = among_surfaces ? model_.true_map : model_.own_map;
+    if (pools[goal] == nullptr) {
+        SpacePoolSetup setup{model_.flight->problem().robot};
+        if (map != nullptr) {
+            setup.aero = simulation::space_aero(problem_.aero, problem_.robot.rotor_radius_m);
+            setup.volumes = map.get();
+        }
+        setup.checker = &model_.flight->collisions();
+        setup.goal = rules_[goal].get();
+        setup.is_over = [this] { return is_over_ && is_over_(); };
+        pools[goal] = std::make_unique<SpacePool>(setup, threads_);
+    }
+    return *pools[goal];
+}
+
+SpaceWorld SpaceProblemWorlds::world(std::uint64_t index) const {
+    return draw_space_world(*problem_.uncertainty, problem_.robot, problem_.planner.seed, index);
+}
+
+SpaceProblemWorlds::Vehicles SpaceProblemWorlds::starts_in(std::span<const SpaceWorld> worlds, bool among_surfaces) {
+    const SpaceMotion motion = start_motion(problem_.start);
+    SpacePool& flights = pool(0, among_surfaces);
+    std::vector<SpaceWorld> quiet;
+    quiet.reserve(worlds.size());
+    std::vector<SpaceFlightJob> jobs;
+    const SpacePoint here = at_rest(configuration_of(reference_at(problem_.start)));
+    const double tick_s = 1 / problem_.robot.controller.rate_hz;
+    const SpaceSegment hover(here, here, std::llround(settling_before_start_s / tick_s), tick_s);
+    Vehicles vehicles;
+    if (!is_at_rest(problem_.start)) {
+        for (const SpaceWorld& world : worlds) {
+            vehicles.emplace_back(flights.state_at(motion, &world));
+        }
+        return vehicles;
+    }
+    for (const SpaceWorld& world : worlds) {
+        quiet.push_back(without_noise(world));
+        jobs.push_back({flights.state_at(motion, &quiet.back()), {{hover}}, &quiet.back()});
+    }
+    flights.fly(jobs);
+    throw_if_over(is_over_);
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        std::optional<AnySpaceState>& vehicle = vehicles.emplace_back();
+        if (jobs[i].rejection() == Rejection::none) {
+            vehicle = jobs[i].end();
+            forget(*vehicle, worlds[i]);
+        }
+    }
+    return vehicles;
+}
+
+SearchWorldsOf<Space> SpaceProblemWorlds::for_search(const CourseOf<Space>& before) {
+    SearchWorldsOf<Space> search;
+    search.worlds = search_worlds(problem_);
+    for (const std::optional<AnySpaceState>& vehicle : vehicles_after(before, search.worlds)) {
+        if (!vehicle) {
+            throw_input_error(
+                "is so wide that the vehicle cannot hover at its start in one of the worlds of the search: "
+                "expected less, or a controller that bears it",
+                "uncertainty");
+        }
+        search.start.push_back(*vehicle);
+    }
+    return search;
+}
+
+SpaceProblemWorlds::Vehicles SpaceProblemWorlds::vehicles_after(const CourseOf<Space>& before,
+                                                                std::span<const SpaceWorld> worlds) {
+    Vehicles vehicles = starts_in(worlds, false);
+    if (before.plan.reference.size() < 2) {
+        return vehicles;
+    }
+    std::vector<SpaceFlightJob> jobs;
+    std::vector<std::size_t> world_of;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        if (vehicles[i]) {
+            jobs.push_back({*vehicles[i], legs_of(before.plan, 0, before.plan.reference.size() - 1), &worlds[i]});
+            world_of.push_back(i);
+        }
+    }
+    pool(0, false).fly(jobs);
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        vehicles[world_of[i]] = jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
+    }
+    return vehicles;
+}
+
+std::vector<CounterexampleOf<Space>> SpaceProblemWorlds::counterexamples(const Certificate& certificate,
+                                                                         const CourseOf<Space>& before) {
+    constexpr std::size_t most = 4;
+    std::vector<SpaceWorld> worlds;
+    for (const WorldSample& sample : certificate.worst) {
+        if (sample.outcome != Outcome::ok && sample.goal == before.goals.size() && worlds.size() < most) {
+            worlds.push_back(world(sample.world));
+        }
+    }
+    const Vehicles vehicles = vehicles_after(before, worlds);
+    std::vector<CounterexampleOf<Space>> counterexamples;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        if (vehicles[i]) {
+            counterexamples.push_back({worlds[i], *vehicles[i]});
+        }
+    }
+    return counterexamples;
+}
+
+std::vector<WorldSample> SpaceProblemWorlds::fly(const SpacePlan& plan, std::size_t visits, std::uint64_t first_world,
+                                                 std::span<const SpaceWorld> worlds, const StopCondition& is_over) {
+    const Asking scope(is_over_, is_over);
+    const std::vector<SpaceGoal> goals(problem_.goals.begin(),
+                                       problem_.goals.begin() + static_cast<std::ptrdiff_t>(visits));
+    const SpaceGoalRule rule(problem_.robot, model_.flight->shared_scene(), goals);
+    const std::vector<SpaceGoalHover> hovers = rule.hovers(plan);
+    const SpacePlan held = plan.held_for(hovers.back().end_tick - plan.reference.back().tick);
+    const Vehicles vehicles = starts_in(worlds, true);
+    std::vector<WorldSample> samples(worlds.size());
+    std::vector<SpaceFlightJob> jobs;
+    std::vector<std::size_t> world_of;
+    for (std::size_t i = 0; i < worlds.size(); ++i) {
+        samples[i] = {first_world + i, Outcome::unstable, 0, 0, false};
+        if (vehicles[i]) {
+            jobs.push_back({*vehicles[i], {}, &worlds[i]});
+            world_of.push_back(i);
+            samples[i].outcome = Outcome::ok;
+            samples[i].min_clearance_m = infinity;
+        }
+    }
+    const std::int64_t settling = std::llround(goal_settling_s / plan.tick_s);
+    std::size_t knot = 0;
+    for (std::size_t visit = 0; visit < hovers.size(); ++visit) {
+        const auto end = std::ranges::find_if(
+            held.reference, [&](const SpaceKnot& each) { return each.tick == hovers[visit].end_tick; });
+        const auto last = static_cast<std::size_t>(end - held.reference.begin());
+        for (SpaceFlightJob& job : jobs) {
+            job.legs = legs_of(held, knot, last);
+            job.first_tick = held.reference[knot].tick;
+            job.judged_ticks = settling;
+        }
+        pool(visit, true).fly(jobs);
+        throw_if_over(is_over);  // then some were interrupted
+        std::vector<SpaceFlightJob> left;
+        std::vector<std::size_t> worlds_left;
+        for (std::size_t i = 0; i < jobs.size(); ++i) {
+            WorldSample& sample = samples[world_of[i]];
+            const Rejection rejection = jobs[i].rejection();
+            if (rejection != Rejection::none) {
+                sample.outcome = outcome_of(rejection);
+                sample.goal = visit;
+                sample.min_clearance_m = rejection == Rejection::collision ? 0 : infinity;
+                continue;
+            }
+            SpaceFlightJob& on = left.emplace_back();
+            on.start = jobs[i].end();
+            on.world = jobs[i].world;
+            worlds_left.push_back(world_of[i]);
+        }
+        jobs = std::move(left);
+        world_of = std::move(worlds_left);
+        knot = last;
+    }
+    if (hovers.size() < visits) {
+        for (const std::size_t i : world_of) {
+            samples[i].outcome = Outcome::goal_missed;
+            samples[i].goal = hovers.size();
+        }
+    }
+    return samples;
+}
+
+void SpaceProblemWorlds::fly_directly(const SpacePlan& plan, std::size_t visits, WorldSample& sample,
+                                      const StopCondition& is_over) const {
+    const std::vector<SpaceGoal> goals(problem_.goals.begin(),
+                                       problem_.goals.begin() + static_cast<std::ptrdiff_t>(visits));
+    const SpaceGoalRule rule(problem_.robot, model_.flight->shared_scene(), goals);
+    SpaceExecutionSettings settings;
+    settings.world = world(sample.world);
+    settings.goals = &rule;
+    settings.is_over = is_over;
+    const SpaceFlight flight = model_.flight->execute(plan, settings);
+    sample.outcome = flight.outcome;
+    sample.min_clearance_m = flight.min_clearance_m;
+    const auto missed = std::ranges::find_if(flight.goals, [](const SpaceGoalVisit& visit) { return !visit.is_met; });
+    sample.goal = missed != flight.goals.end() ? static_cast<std::size_t>(missed - flight.goals.begin()) : 0;
+}
+
+Certificate SpaceProblemWorlds::tested(const SpacePlan& whole, std::size_t visits, std::uint64_t first_world,
+                                       const StopCondition& is_over, const WorldCounter& counter,
+                                       CertificateRecord record) {
+    constexpr std::uint64_t chunk = 64;     // a bad plan fails in the first of them
+    constexpr std::size_t flown_again = 2;  // with direct aerodynamics: volumes are not the last word
+    bool is_checked = false;
+    try {
+        for (;;) {
+            throw_if_over(is_over);
+            if (counter) {
+                counter(record.worlds(), record.failures());
+            }
+            const std::uint64_t wanted = record.worlds_wanted();
+            if (wanted == 0) {
+                if (!record.passes()) {
+                    break;
+                }
+                std::vector<WorldSample> again = record.nearest_successes(flown_again);
+                run_parallel(again.size(), threads_,
+                             [&](std::size_t i) { fly_directly(whole, visits, again[i], is_over); });
+                is_checked = !record.replace(again);
+                if (is_checked) {
+                    break;
+                }
+                continue;
+            }
+            std::vector<SpaceWorld> worlds;
+            const std::uint64_t first = first_world + record.worlds();
+            for (std::uint64_t i = 0; i < std::min(chunk, wanted); ++i) {
+                worlds.push_back(world(first + i));
+            }
+            for (const WorldSample& sample : fly(whole, visits, first, worlds, is_over)) {
+                record.add(sample);
+            }
+        }
+    } catch (const WorkStopped&) {  // it has what was flown so far
+    }
+    return record.certificate(is_checked);
+}
+
+Certificate SpaceProblemWorlds::certify(const SpacePlan& whole, std::uint64_t attempt, const StopCondition& is_over,
+                                        const WorldCounter& counter) {
+    const PlannerSettings& settings = problem_.planner;
+    return tested(whole, goals(), attempt * worlds_per_attempt, is_over, counter,
+                  CertificateRecord(settings.max_failure_probability, settings.confidence, attempt));
+}
+
+Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const SpacePlan& part,
+                                       const StopCondition& is_over, const WorldCounter& counter) {
+    constexpr double confidence = 0.8, first_confidence = 0.5;  // see ProblemWorlds::screen()
+    const std::size_t visited = before.goals.size();
+    const double share = problem_.planner.max_failure_probability / static_cast<double>(goals());
+    return tested(before.plan.followed_by(part), visited + 1, first_screening, is_over, counter,
+                  CertificateRecord(share, before.attempts > 0 ? confidence : first_confidence, 1, visited));
+}
+
+}  // namespace downwash::planning

@@ -1,0 +1,138 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "../support/space_robots.hpp"
+#include "downwash/controllers/space_duration.hpp"
+#include "downwash/search/free_air_cost.hpp"
+#include "downwash/search/planned_flights.hpp"
+#include "downwash/search/space_search_space.hpp"
+
+using namespace downwash;
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+/// A box over the ground and a goal for the tip of an arm of two joints, which shall point sideways.
+SpaceProblem box_problem() {
+    SpaceProblem problem;
+    problem.robot = test::space_robot(2);
+    for (SpaceLinkLimits& link : problem.robot.links) {
+        link.is_limited = true;
+        link.lower_limit_rad = -100 * degree;
+        link.upper_limit_rad = 100 * degree;
+    }
+    problem.robot.body.push_back({Box{{0.3, 0.3, 0.1}}});
+    problem.bounds = {{-2, -2, 0.5}, {2, 2, 3}};
+    Obstacle box;
+    box.name = "box";
+    box.shape = Box{{0.5, 0.5, 0.5}};
+    box.center_world_m = {0, 0, 1};
+    problem.obstacles.push_back(box);
+    problem.start.position_m = {-1.5, 0, 1.5};
+    SpaceEndEffectorGoal tip;
+    tip.position_m = {1, 1, 1.5};
+    tip.direction = Vector3{0, 1, 0};
+    tip.direction_tolerance_rad = 15 * degree;
+    SpaceGoal goal;
+    goal.kind = tip;
+    problem.goals.push_back(goal);
+    problem.aero.enabled = false;
+    return problem;
+}
+
+struct Fixture {
+    SpaceProblem problem = box_problem();
+    std::shared_ptr<const SpaceProblemModel> model = std::make_shared<const SpaceProblemModel>(problem);
+    planning::SearchTaskOf<planning::Space> task{problem, *model, nullptr};
+    const planning::SpaceSearchSpace& space = task.space;
+    planning::Random random{7};
+};
+
+}  // namespace
+
+TEST_CASE("the distance of configurations in space is a metric without weights, and yaw goes the shorter way") {
+    Fixture f;
+    for (int i = 0; i < 300; ++i) {
+        const SpaceConfiguration a = f.space.sample(f.random), b = f.space.sample(f.random),
+                                 c = f.space.sample(f.random);
+        const double ab = f.space.distance_m(a, b);
+        CHECK(ab == Approx(f.space.distance_m(b, a)).epsilon(1e-12));
+        CHECK(ab <= f.space.distance_m(a, c) + f.space.distance_m(c, b) + 1e-12);
+        CHECK(f.space.distance_m(a, a) == 0);
+        // It is the time of the reference that is flown, at the top speed.
+        const SpaceConfiguration seen = f.space.seen_from(a, b);
+        const std::int64_t ticks = shortest_ticks(at_rest(a), at_rest(seen), f.problem.motion, f.task.tick_s);
+        const double duration_s = ab * planning::peak_over_mean_speed / f.problem.motion.max_speed_m_s;
+        CHECK(static_cast<double>(ticks) * f.task.tick_s >= duration_s - 1e-9);
+        CHECK(static_cast<double>(ticks - 1) * f.task.tick_s < duration_s + 1e-9);
+    }
+    SpaceConfiguration east{}, west{};
+    east[space::yaw] = 170 * degree;
+    west[space::yaw] = -170 * degree;
+    CHECK(f.space.seen_from(east, west)[space::yaw] == Approx(190 * degree));
+}
+
+TEST_CASE("samples in space keep bounds and limits, and those at a goal meet it without a collision") {
+    Fixture f;
+    int found = 0;
+    for (int i = 0; i < 50; ++i) {
+        CHECK(f.space.is_inside(f.space.sample(f.random)));
+        if (const auto sample = f.space.sample_goal(f.random)) {
+            ++found;
+            CHECK(f.space.is_near_goal(*sample));
+            CHECK(f.space.is_valid(*sample));
+            CHECK(f.space.goal_distance_m(*sample) == 0);
+            if (const auto near = f.space.sample_goal_near(*sample, 0.2, f.random)) {
+                CHECK(f.space.is_near_goal(*near));
+            }
+            CHECK(f.space.error(f.space.moved_into_goal(*sample, 0)).distance_m < 1e-9);
+        }
+    }
+    CHECK(found > 25);
+    SpaceConfiguration in_box{};
+    in_box[space::z] = 1;
+    CHECK(f.space.rejection_at(in_box) == Rejection::collision);
+    in_box[space::y] = 2.5;
+    CHECK(f.space.rejection_at(in_box) == Rejection::bounds);
+    in_box[space::y] = 1.5;
+    in_box[space::first_joint] = 101 * degree;
+    CHECK(f.space.rejection_at(in_box) == Rejection::arm_limits);
+}
+
+TEST_CASE("no way to a goal in space is estimated to cost more than it does") {
+    Fixture f;
+    const planning::FreeAirCostOf<planning::Space> cost(f.task);
+    for (int i = 0; i < 100; ++i) {
+        const SpaceConfiguration from = f.space.sample(f.random);
+        if (const auto goal = f.space.sample_goal(f.random)) {
+            const double hold_s = f.problem.goals.front().hold_s;
+            CHECK(cost.min_cost_to_goal(from) <= cost.of_motion(from, *goal) + cost.of_hold(*goal, hold_s));
+            CHECK(cost.min_cost_of_motion(from, *goal) <= cost.of_motion(from, *goal));
+        }
+    }
+}
+
+TEST_CASE("a flight in space that is flown again comes out the same to the last bit, by itself and in a chain of legs") {
+    Fixture f;
+    planning::PlannedFlightsOf<planning::Space> flights(f.task);
+    const AnySpaceState start = f.task.start;
+    SpaceConfiguration there = planning::place_of(f.problem.start);
+    there[space::y] = 1.2;
+    there[space::yaw] = 1;
+    const SpacePoint from = planning::reference_at(f.problem.start);
+    const SpaceSegment segment = flights.fastest_segment(from, at_rest(there));
+    std::vector<planning::FleetJobOf<planning::Space>> jobs{flights.job({start}, 0, {{segment}})};
+    flights.fly(jobs);
+    REQUIRE(jobs.front().is_accepted());
+    planning::FlightPointOf<planning::Space> begin = planning::start_point(f.task), end = begin;
+    end.vehicle = jobs.front().end().front();
+    end.reference = segment.to();
+    end.ticks = segment.ticks();
+    CHECK_NOTHROW(flights.verify(std::vector{begin, end}));
+    end.vehicle.plant.q[0] += 1e-15;
+    end.vehicle.plant.energy_j += 1;
+    CHECK_THROWS(flights.verify(std::vector{begin, end}));
+}
