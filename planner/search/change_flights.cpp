@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "downwash/controllers/space_duration.hpp"
+
 namespace downwash::planning {
 namespace {
 
