@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 
 #include "downwash/controllers/space_reference.hpp"
@@ -23,8 +24,9 @@ struct SpaceConfiguration {
     friend bool operator==(const SpaceConfiguration&, const SpaceConfiguration&) = default;
 };
 
-/// The reference that rests at a configuration.
-[[nodiscard]] inline SpacePoint at_rest(const SpaceConfiguration& configuration) noexcept {
+/// The reference that rests at a configuration. A template, so that numbers in braces are a configuration in a plane.
+template <std::same_as<SpaceConfiguration> Configuration>
+[[nodiscard]] SpacePoint at_rest(const Configuration& configuration) noexcept {
     SpacePoint point;
     std::ranges::copy(configuration.coordinate, point.position);
     return point;
