@@ -19,7 +19,9 @@ struct SpaceConfiguration {
 
     [[nodiscard]] constexpr auto begin() noexcept { return coordinate.begin(); }
     [[nodiscard]] constexpr auto begin() const noexcept { return coordinate.begin(); }
+    [[nodiscard]] constexpr auto end() noexcept { return coordinate.end(); }
     [[nodiscard]] constexpr auto end() const noexcept { return coordinate.end(); }
+    [[nodiscard]] static constexpr std::size_t size() noexcept { return space_axes<max_joints>; }
 
     friend bool operator==(const SpaceConfiguration&, const SpaceConfiguration&) = default;
 };
