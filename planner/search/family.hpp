@@ -1,5 +1,6 @@
 #pragma once
 
+#include "downwash/base/export.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/controllers/space_configuration.hpp"
 #include "downwash/problems/problem_model.hpp"
@@ -25,7 +26,7 @@ class StopFinder;
 class NoStopFinder;
 
 /// Vehicles in a vertical plane.
-struct Plane {
+struct DOWNWASH_EXPORT Plane {
     using Problem = downwash::Problem;
     using Goal = downwash::Goal;
     using FlightModel = downwash::FlightModel;
@@ -59,7 +60,7 @@ struct SpaceFlightWorld {
 };
 
 /// Vehicles in space with any number of joints.
-struct Space {
+struct DOWNWASH_EXPORT Space {
     using Problem = SpaceProblem;
     using Goal = SpaceGoal;
     using FlightModel = SpaceProblemModel;
