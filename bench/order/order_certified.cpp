@@ -227,14 +227,15 @@ void add(Row& row, const Problem& problem, double time_s, const Options& options
 void print(const std::vector<Row>& rows, const Options& options) {
     fmt::print(
         "# Targets in any order, certified\n\n"
-        "Commit {}, g++ {}, {}, {} threads a search, one search at a time, seed {}. `bench/order_certified.sh` writes "
+        "Commit {}, g++ {}, {}, {} thread{} a search, one search at a time, seed {}. `bench/order_certified.sh` writes "
         "this page.\n\n"
         "{} random open scenes with a way back, in the worlds of `uncertainty: {{}}`, and the given files with their "
         "own settings. *List*: the same targets as a list in the\nshortest order, with as much time. A search counts "
         "if its flight visits all targets and is solved, with a certificate where worlds are asked for. *Cost*: any "
         "order by list,\nthe mean over scenes that both have{}.\n\n"
         "| scenes | targets | limit | any order | list | cost |\n|---|---|---|---|---|---|\n",
-        source_commit(), __VERSION__, DOWNWASH_BUILD_TYPE, options.threads, options.seed, options.scenes,
+        source_commit(), __VERSION__, DOWNWASH_BUILD_TYPE, options.threads, options.threads == 1 ? "" : "s",
+        options.seed, options.scenes,
         options.is_first_enough ? ", of first plans: a search ends with the first that counts" : "");
     bool is_kept = true;
     for (const Row& row : rows) {
