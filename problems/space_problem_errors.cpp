@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "downwash/aeromap/direct_effect.hpp"
 #include "downwash/base/angles.hpp"
@@ -17,6 +20,7 @@
 #include "downwash/problems/space_problem_model.hpp"
 #include "downwash/problems/space_problem_parameters.hpp"
 #include "downwash/scene/collision_checker.hpp"
+#include "downwash/scene/line_of_sight.hpp"
 #include "downwash/scene/scene.hpp"
 #include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/space_goal_reach.hpp"
@@ -281,11 +285,29 @@ Errors unclear(const SpaceCameraGoal& goal, const SpaceProblem& p, double reach_
     return errors;
 }
 
-Errors unclear(const SpaceContactGoal& goal, const SpaceProblem& p, double /*reach_m*/, const std::string& key) {
+/// A place that is not on what should be touched there.
+Errors place_off_obstacle(const SpaceContactGoal& goal, const SpaceProblem& p, double reach_m, const std::string& key) {
+    if (!goal.position_m) {
+        return {};
+    }
+    std::vector<Obstacle> named;
+    std::copy_if(p.obstacles.begin(), p.obstacles.end(), std::back_inserter(named),
+                 [&](const Obstacle& obstacle) { return obstacle.name == goal.obstacle; });
+    if (is_line_clear(Scene(std::move(named)), *goal.position_m, *goal.position_m, goal.tolerance_m)) {
+        return {{key + ".position_m", "is farther than tolerance_m, " + to_text(goal.tolerance_m) +
+                                          ", from the obstacle '" + excerpt(goal.obstacle) +
+                                          "': expected a point of its surface, or null for any"}};
+    }
+    return goal.part == TouchingPart::end_effector
+               ? unreachable(*goal.position_m, goal.tolerance_m, p, reach_m, key + ".position_m")
+               : Errors();
+}
+
+Errors unclear(const SpaceContactGoal& goal, const SpaceProblem& p, double reach_m, const std::string& key) {
     const bool is_known = std::any_of(p.obstacles.begin(), p.obstacles.end(),
                                       [&](const Obstacle& obstacle) { return obstacle.name == goal.obstacle; });
     if (!goal.obstacle.empty() && is_known) {
-        return {};
+        return place_off_obstacle(goal, p, reach_m, key);
     }
     std::vector<std::string_view> names;
     for (const Obstacle& obstacle : p.obstacles) {

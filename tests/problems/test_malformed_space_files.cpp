@@ -130,6 +130,10 @@ const Edit problem_edits[] = {
      "pose: {position_m: [3, -2, 2.5]}",
      "11:3: goal.pose.rpy_deg is missing: expected [roll, pitch, yaw] in deg from -360 to 360"},
     {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
+     "contact: {obstacle: pole, force_n: 5, position_m: [4, 0, 2]}",
+     "11:53: goal.contact.position_m is farther than tolerance_m, 0.1, from the obstacle 'pole': expected a point of "
+     "its surface, or null for any"},
+    {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",
      "contact: {obstacle: pole, force_n: 5, part: wrist}",
      "11:47: goal.contact.part is 'wrist': expected one of frame or end_effector"},
     {"end_effector: {position_m: [3, -2, 2.5], tolerance_m: 0.1, direction: [0, 0, 1]}",

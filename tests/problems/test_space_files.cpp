@@ -82,7 +82,7 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
     const SpaceGoal pose{SpacePoseGoal{{1, 1, 2}, {0.1, 0.2, 0.3}, 0.2, 0.1}, 5, {}};
     const SpaceGoal camera{SpaceCameraGoal{{0, 0, 3}, 0.5, 1.5, Vector3{1, 0, 0}, 0.4, 0.1, false}, 5, {}};
     const SpaceGoal contact{
-        SpaceContactGoal{"pole", 4, TouchingPart::frame, Vector3{4, 2, 2}, 0.2, 0.5, 0.2, 0.05}, 6, {}};
+        SpaceContactGoal{"pole", 4, TouchingPart::frame, Vector3{4, 2.8, 2}, 0.2, 0.5, 0.2, 0.05}, 6, {}};
     const SpaceGoal choice{{}, 5, {point, camera, configuration, pose, contact}};
     for (const bool in_any_order : {false, true}) {
         problem.goals = {configuration, point, pose, camera, contact, choice};
@@ -99,7 +99,7 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
         CHECK(free.joints_rad == std::vector{0.1, -0.2});
         CHECK(std::get<SpacePoseGoal>(again.goals[2].kind).rpy_rad == Vector3{0.1, 0.2, 0.3});
         CHECK_FALSE(std::get<SpaceCameraGoal>(again.goals[3].kind).sees);
-        CHECK(*std::get<SpaceContactGoal>(again.goals[4].kind).position_m == Vector3{4, 2, 2});
+        CHECK(*std::get<SpaceContactGoal>(again.goals[4].kind).position_m == Vector3{4, 2.8, 2});
         REQUIRE(again.goals[5].any_of.size() == 5);
         CHECK(std::get<SpaceContactGoal>(again.goals[5].any_of[4].kind).force_n == 4);
         CHECK(std::get<SpaceEndEffectorGoal>(again.goals[5].any_of[0].kind).position_m[0] == 1.0 / 7);
