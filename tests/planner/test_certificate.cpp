@@ -47,7 +47,7 @@ void keep_in_plane(Problem& problem) {
 
 /// The share of searches in which some plan passes, all of which fail with probability p; ten plans in each.
 double share_that_passes(double p, double max_p, double confidence, int searches) {
-    Random random(4);
+    test::Random random(4);
     std::vector<CertificateTest> tests;
     for (std::uint64_t attempt = 1; attempt <= 10; ++attempt) {
         tests.emplace_back(max_p, confidence, attempt);
