@@ -92,7 +92,7 @@ awk -v layers="$layers" -v one_library="$one_library" -v private_list="$(private
         module = folder
         sub(/.*\//, "", module)
         everything = (folder, "*") in may
-        knows_inside = module == "tests" || FILENAME ~ /^bench\/nearest_places\// # which measures what users do not see
+        knows_inside = module == "tests" || FILENAME ~ /^bench\/(nearest_places|space_oracle)\// # which measures what users do not see
         included_as = module substr(FILENAME, length(folder) + 1)
         shown = FILENAME ~ /\.hpp$/ && !(included_as in kept) && !everything && module != "python" # which installs no header
     }

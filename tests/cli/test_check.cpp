@@ -173,7 +173,7 @@ TEST_CASE("Keys by their former names are warnings of check and of results") {
     CHECK(solved.err.empty());
 }
 
-TEST_CASE("A problem in space is begun, checked and explained, and no plan is searched for") {
+TEST_CASE("A problem in space is begun, checked, explained and solved") {
     const Workspace work;
     CHECK(work.run("init --space").out == "my_problem.yaml\nhexa370_arm3.yaml\n");
     const Result checked = work.succeed("check my_problem.yaml hexa370_arm3.yaml");
@@ -185,7 +185,8 @@ TEST_CASE("A problem in space is begun, checked and explained, and no plan is se
     CHECK(robots.at(0).at("joints") == 3);
     CHECK(robots.at(0).at("hover_joints_deg").size() == 3);
 
-    check_rejected(work.run("solve my_problem.yaml"), "plans are not searched for there yet");
+    CHECK_THAT(work.succeed("solve my_problem.yaml --max-iterations 100 --out planned").out,
+               Contains("status            solved"));
     CHECK_THAT(work.succeed("check my_problem.yaml --picture views.svg").out, Catch::EndsWith("\nviews.svg\n"));
     CHECK_THAT(work.text("views.svg"), Contains("from above") && Contains("from the front") && Contains("girder"));
     if (has_pages) {
