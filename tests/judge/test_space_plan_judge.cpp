@@ -189,9 +189,3 @@ TEST_CASE("A vehicle that starts tilted in a world does not hover first, for the
         REQUIRE(std::sqrt(dot(apart, apart)) < 1e-4);
     }
 }
-
-TEST_CASE("The judge of plans in space rejects air that it does not know") {
-    SpaceProblem walls = problem();
-    walls.aero.wall.force = 0.1;
-    CHECK_THROWS_AS(judge::SpacePlanJudge(walls), InputError);
-}
