@@ -42,6 +42,7 @@ std::optional<SpacePlanningRules> space_planning_rules(const SpaceProblem& probl
     SpacePlanningRules rules;
     rules.low_m = problem.bounds.low_m;
     rules.high_m = problem.bounds.high_m;
+    rules.keeps_joint_limits = false;  // references do; an arm that hovers at a limit swings about it
     rules.max_tracking_error_m = FlightRules{}.max_tracking_error_m;
     rules.max_saturation = problem.planner.max_saturation;
     return rules;
