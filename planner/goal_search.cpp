@@ -107,6 +107,7 @@ std::vector<typename Family::TreeNode> nodes_of(const FlightTreeOf<Family>& tree
         add(node);
     }
     std::vector<typename Family::TreeNode> nodes;
+    nodes.reserve(order.size());
     for (const Node* node : order) {
         nodes.push_back({configuration_of(node->reference),
                          node->parent != nullptr ? number.at(node->parent) : Family::TreeNode::no_parent});

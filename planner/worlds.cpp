@@ -22,6 +22,7 @@ namespace {
 std::vector<double> quantiles_of_world(const Robot& robot, std::uint64_t number) {
     const std::vector<const WorldParameter*> parameters = world_parameters_of(robot);
     std::vector<DangerQuantiles> dangers;
+    dangers.reserve(parameters.size());
     for (const WorldParameter* parameter : parameters) {
         dangers.push_back(parameter->danger);
     }
