@@ -87,4 +87,12 @@ struct DOWNWASH_EXPORT Space {
     using StopFinder = NoStopFinder;
 };
 
+/// What limits the references of a problem.
+[[nodiscard]] inline const MotionLimits& motion_limits_of(const Problem& problem) noexcept {
+    return problem.motion;
+}
+[[nodiscard]] inline const SpaceMotionLimits& motion_limits_of(const SpaceProblem& problem) noexcept {
+    return problem.motion;
+}
+
 }  // namespace downwash::planning

@@ -36,7 +36,7 @@ FreeAirCostOf<Family>::FreeAirCostOf(const SearchTask& task)
       counts_clearance_(objective_.weight(Objective::clearance) > 0),
       model_(task.model),
       space_(task.space),
-      limits_(task.problem.motion),
+      limits_(motion_limits_of(task.problem)),
       hover_power_w_(hover_power_w(task.model)) {}
 
 template <>

@@ -27,7 +27,7 @@ PlanChangesOf<Family>::PlanChangesOf(const PlannedFlights& flights, Random& rand
     : flights_(flights),
       space_(flights.task().space),
       random_(random),
-      motion_(flights.task().problem.motion),
+      motion_(motion_limits_of(flights.task().problem)),
       tick_s_(1 / flights.task().problem.robot.controller.rate_hz) {}
 
 template <class Family>

@@ -140,7 +140,7 @@ PlannedFlightsOf<Family>::PlannedFlightsOf(const SearchTask& task, std::function
     : task_(task),
       goal_(task),
       objective_(task),
-      limits_(task.problem.motion),
+      limits_(motion_limits_of(task.problem)),
       tick_s_(task.tick_s),
       nominal_(edge_flights(task, true, is_over, threads)) {
     if (task.worlds != nullptr) {

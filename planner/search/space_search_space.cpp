@@ -70,7 +70,7 @@ SpaceSearchSpace::SpaceSearchSpace(const SpaceProblem& problem, const SpaceProbl
       rule_(problem.robot, model.shared_scene(), {problem.goals.front()}),
       sampler_(problem.robot, problem.bounds, model.shared_scene(), model.collisions(), problem.planner.safety_margin_m,
                problem.goals.front()),
-      limits_(problem.motion),
+      limits_(motion_limits_of(problem)),
       start_(place_of(problem.start)),
       margin_m_(problem.planner.safety_margin_m),
       reach_m_(model.collisions().robot_reach_m()) {}
