@@ -68,6 +68,7 @@ SpaceSurfaces::SpaceSurfaces(const std::shared_ptr<const Scene>& scene, const Ae
     }
     if (has_ground_images_ && aero.ground.model == EffectModel::multirotor_body) {
         std::vector<Vector3> hubs_m;
+        hubs_m.reserve(rotors.size());
         for (const SpaceRotor& rotor : rotors) {
             hubs_m.push_back(rotor.position_m);
         }
