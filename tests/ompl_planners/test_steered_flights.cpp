@@ -42,7 +42,9 @@ TEST_CASE("a step is a pure function, and flies as the same segment does") {
     const FlightPoint middle = f.steered.stepped(start, obliquely);
     for (const auto& [from, to] : {std::pair(start.reference, middle.reference), {middle.reference, a.reference}}) {
         const ReferenceSegment segment(from, to, 50, 0.01);
-        CHECK(fly(*f.model, f.map.get(), planning::planning_rules(f.task.problem, true, {}), segment, state).rejection == Rejection::none);
+        CHECK(
+            fly(*f.model, f.map.get(), planning::planning_rules(f.task.problem, true, {}), segment, state).rejection ==
+            Rejection::none);
     }
     CHECK(is_same(state, a.vehicle));
     CHECK(a.cost == Approx(state.plant.energy_j).epsilon(1e-12));
