@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <memory>
 
+// The functions of a pack of lanes have to be there before what is flown with them.
+#include "downwash/base/lane_pack.hpp"
+
 #include "bridge.hpp"
 #include "downwash/aeromap/volume_map.hpp"
-#include "downwash/base/lane_pack.hpp"
 #include "downwash/base/numbers.hpp"
 #include "downwash/dynamics/quadrotor.hpp"
 #include "downwash/dynamics/space_step.hpp"
