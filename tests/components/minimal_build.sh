@@ -37,6 +37,25 @@ if left=$(grep -E 'Left out: (the program|pictures)' "$build/log"); then
     echo "CMake leaves out what ./dev run builds: $left"
     exit 1
 fi
+# Its sources, and all headers that they lead to, include none of a part that is left out.
+mapfile -t read < <(sed -n 's|^ *"file": "\(.*\.cpp\)",\{0,1\}$|\1|p' "$build/run/compile_commands.json")
+declare -A known
+while ((${#read[@]} > 0)); do
+    next=()
+    while IFS=: read -r file header; do
+        if [[ ! -e "$build/run/include/$header" ]]; then
+            echo "$file includes $header, which a build for ./dev run does not have"
+            exit 1
+        fi
+        [[ -n ${known[$header]:-} ]] || next+=("$build/run/include/$header")
+        known[$header]=1
+    done < <(grep -HoP '^#include "\Kdownwash/[^"]+' -- "${read[@]}")
+    read=("${next[@]}")
+done
+((${#known[@]} > 100)) || {
+    echo "no more than ${#known[@]} headers were found"
+    exit 1
+}
 [[ ${1:-} != --configure ]] || exit 0
 
 cmake --build "$build" --parallel "${JOBS:-1}"
