@@ -42,6 +42,9 @@ constexpr std::array own_rrt_star{
     AlgorithmParameter{"passage_share", 0, 0, 1,
                        "share of the samples in narrow passages, which are flown through at speed (bridge test, Hsu et "
                        "al. 2003)"},
+    AlgorithmParameter{"way_share", 0.5, 0, 1,
+                       "in space: share of the samples before the first plan along ways that the level vehicle fits "
+                       "through (RRT-Connect)"},
     AlgorithmParameter{"range_share", 0.2, 0.001, 1, "longest edge, as a share of the space's extent"},
     AlgorithmParameter{"optimism", 0.9, 0.01, 1,
                        "an edge is simulated if it wins with this multiple of its cost in free air"},

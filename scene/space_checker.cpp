@@ -289,14 +289,14 @@ std::optional<SpaceChecker::Bodies> SpaceChecker::touching_bodies(const SpacePos
                : std::nullopt;
 }
 
-double SpaceChecker::free_motion_m(const SpacePose& pose, double margin_m, double enough_m) const {
+SpaceChecker::FreeMotion SpaceChecker::free_motion(const SpacePose& pose, double margin_m, double enough_m) const {
     if (!impl_->is_usable(pose)) {
-        return 0;
+        return {};
     }
     const SpaceFrames frames = impl_->arm.frames_at(pose);
     const double to_obstacles_m = impl_->obstacle_clearance_m(frames, margin_m + enough_m) - margin_m;
     const double to_itself_m = impl_->self_clearance_m(frames, impl_->pairs_at(pose), enough_m);
-    return std::clamp(std::min(to_obstacles_m, to_itself_m), 0.0, enough_m);
+    return {std::clamp(to_obstacles_m, 0.0, enough_m), std::clamp(to_itself_m, 0.0, enough_m)};
 }
 
 bool SpaceChecker::comes_nearer_between(const SpacePose& from, const SpacePose& to, double margin_m) const {

@@ -69,11 +69,16 @@ class DOWNWASH_EXPORT SpaceChecker {
     /// Two bodies that touch each other, for messages. Of several pairs, any.
     [[nodiscard]] std::optional<Bodies> touching_bodies(const SpacePose& pose) const;
 
-    /// How far every point of the robot may move from a pose until the next look [m]: before it has, the robot is not
-    /// nearer than `margin_m` to an obstacle and does not touch itself. At most `enough_m`, 0 if it is nearer already.
-    /// motion_m() bounds how far points move. Between solids of the robot it holds while joints within their limits
-    /// stay within them.
-    [[nodiscard]] double free_motion_m(const SpacePose& pose, double margin_m, double enough_m) const;
+    /// How far a robot may move from a pose until the next look, each at least 0.
+    struct FreeMotion {
+        double to_obstacles_m = 0;  ///< by motion_m(): before, it is not nearer than the margin to an obstacle
+        double to_itself_m = 0;     ///< by joint_motion_m(): before, it does not touch itself, if joints within their
+                                    ///< limits stay within them
+
+        [[nodiscard]] bool is_none() const noexcept { return to_obstacles_m <= 0 || to_itself_m <= 0; }
+    };
+    /// At most `enough_m` each, 0 if it is nearer already.
+    [[nodiscard]] FreeMotion free_motion(const SpacePose& pose, double margin_m, double enough_m) const;
 
     /// Whether the robot is nearer than a margin to an obstacle, or touches one or itself, at some pose between two
     /// poses, ends included. Between them position and joints change evenly, and the attitude turns the shorter way at

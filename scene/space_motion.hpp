@@ -93,6 +93,18 @@ template <class T>
     return most_m;
 }
 
+/// A bound on how far any points of the robot move relative to each other while coordinates change that much [m].
+template <class T>
+[[nodiscard]] T joint_motion_m(const SpaceReach& reach, const SpaceChange<T>& change) {
+    T most_m(0);
+    for (std::size_t body = 1; body <= reach.links; ++body) {
+        if (reach.bodies[body].can_touch) {
+            most_m = lane::max(most_m, joint_motion_m(reach, 0, body, change));
+        }
+    }
+    return most_m;
+}
+
 /// By how much coordinates change between two poses.
 [[nodiscard]] inline SpaceChange<double> change_between(const SpacePose& from, const SpacePose& to) noexcept {
     SpaceChange<double> change;

@@ -51,7 +51,8 @@ struct alignas(64) SpaceLanes {
 
     // While the robot is this near to coordinates, and every joint within its limits, nothing but stability is checked.
     double anchor[dynamics::space_coordinates<n>][lane_count];
-    double free_motion_m[lane_count];  ///< negative: check after every tick; infinite: never
+    double free_motion_m[lane_count];        ///< negative: check after every tick; infinite: never
+    double free_joint_motion_m[lane_count];  ///< of the robot's points relative to each other
 
     LaneRows<BasicSpaceSums<double>> sums;
     double is_active[lane_count];  ///< 1, or 0 for a lane that only fills the pack, which stays as it is

@@ -256,7 +256,7 @@ PackMask is_within(const dynamics::SpaceState<Pack, n>& state, Pack max) {
 /// The lanes for which a check is due.
 template <int n>
 PackMask is_look_due(const SpaceKernelModel<n>& model, const SpaceCoordinates<n>& anchor, Pack free_motion_m,
-                     const Pack q[dynamics::space_coordinates<n>]) {
+                     Pack free_joint_motion_m, const Pack q[dynamics::space_coordinates<n>]) {
     SpaceChange<Pack> change;
     const Pack dx = q[0] - anchor.q[0], dy = q[1] - anchor.q[1], dz = q[2] - anchor.q[2];
     change.shift_m = sqrt(dx * dx + dy * dy + dz * dz);
@@ -266,7 +266,8 @@ PackMask is_look_due(const SpaceKernelModel<n>& model, const SpaceCoordinates<n>
         change.joints_rad[i] = abs(q[7 + i] - anchor.q[7 + i]);
         is_due = is_due | (q[7 + i] < Pack(model.joint_low_rad[i])) | (q[7 + i] > Pack(model.joint_high_rad[i]));
     }
-    return is_due | (motion_m(model.reach, change) > free_motion_m);
+    return is_due | (motion_m(model.reach, change) > free_motion_m) |
+           (joint_motion_m(model.reach, change) > free_joint_motion_m);
 }
 
 /// After so many times that lanes looked around the kernel returns, so that a flight among many obstacles can be ended.
@@ -303,6 +304,7 @@ void fly_space_group(const SpaceKernelModel<n>& model, SpaceLanes<n>& lanes, con
     SpaceCoordinates<n> anchor;
     group.load(lanes.anchor, anchor);
     Pack free_motion_m = group.load(lanes.free_motion_m);
+    Pack free_joint_motion_m = group.load(lanes.free_joint_motion_m);
     const bool has_noise = any(group.load(lanes.has_noise) > Pack(0));
     Pack noise[drawn_space_noise_count];
     for (Pack& number : noise) {
@@ -338,7 +340,7 @@ void fly_space_group(const SpaceKernelModel<n>& model, SpaceLanes<n>& lanes, con
                                   (given.saturation <= Pack(model.max_result)) & (is_upright | !was_upright);
         was_upright = is_upright;
         rejection = select(is_sound, Pack(0), Pack(static_cast<double>(Rejection::unstable)));
-        unclear = select(is_look_due(model, anchor, free_motion_m, q), Pack(1), Pack(0));
+        unclear = select(is_look_due(model, anchor, free_motion_m, free_joint_motion_m, q), Pack(1), Pack(0));
         if (any(group.is_active & ((rejection > Pack(0)) | (tick >= ticks)))) {
             break;
         }
@@ -360,6 +362,7 @@ void fly_space_group(const SpaceKernelModel<n>& model, SpaceLanes<n>& lanes, con
             }
             group.load(lanes.anchor, anchor);
             free_motion_m = group.load(lanes.free_motion_m);
+            free_joint_motion_m = group.load(lanes.free_joint_motion_m);
         }
     }
     const State& before = (state == &states[0] ? states[1] : states[0]).plant;

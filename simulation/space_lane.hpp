@@ -85,7 +85,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         lanes_->has_noise[number_] = world_.has_noise ? 1 : 0;
         lanes_->is_active[number_] = 1;
         lanes_->tick[number_] = 0;
-        free_motion_m_ = -1;
+        free_ = {};
         begin_leg();
         if (const Rejection rejection = rejection_at_start(); rejection != Rejection::none) {
             end_with(rejection);
@@ -104,7 +104,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         description_ = other.description_;
         world_ = other.world_;
         looked_at_ = other.looked_at_;
-        free_motion_m_ = other.free_motion_m_;
+        free_ = other.free_;
         lanes_->is_active[other.number_] = 0;
     }
 
@@ -250,6 +250,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
     /// look.
     Rejection rejection_nearby() {
         double free_m = std::numeric_limits<double>::infinity();
+        double free_joint_motion_m = std::numeric_limits<double>::infinity();
         if (const auto& rules = setting_->setup.rules) {
             for (std::size_t i = 0; i < 3; ++i) {
                 const double at_m = lanes_->vehicle[i][number_];
@@ -264,18 +265,22 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         }
         if (const SpaceChecker* const checker = setting_->setup.checker) {
             const SpacePose pose = pose_in(lanes_->vehicle);
-            double moved_m = motion_m(model_->reach, change_between(looked_at_, pose));
-            if (!(moved_m < free_motion_m_) || !is_within_joint_limits()) {
+            const SpaceChange<double> change = change_between(looked_at_, pose);
+            double moved_m = motion_m(model_->reach, change);
+            double bent_m = joint_motion_m(model_->reach, change);
+            if (!(moved_m < free_.to_obstacles_m && bent_m < free_.to_itself_m) || !is_within_joint_limits()) {
                 const double margin_m = setting_->setup.margin_m;
-                free_motion_m_ = checker->free_motion_m(pose, margin_m, max_free_motion_m);
-                if (free_motion_m_ <= 0 || checker->comes_nearer_between(pose_in(lanes_->before), pose, margin_m)) {
+                free_ = checker->free_motion(pose, margin_m, max_free_motion_m);
+                if (free_.is_none() || checker->comes_nearer_between(pose_in(lanes_->before), pose, margin_m)) {
                     return Rejection::collision;
                 }
                 looked_at_ = pose;
-                free_motion_m_ -= free_motion_error_m(checker->kind());
-                moved_m = 0;
+                free_.to_obstacles_m -= free_motion_error_m(checker->kind());
+                free_.to_itself_m -= free_motion_error_m(checker->kind());
+                moved_m = bent_m = 0;
             }
-            free_m = std::min(free_m, free_motion_m_ - moved_m);
+            free_m = std::min(free_m, free_.to_obstacles_m - moved_m);
+            free_joint_motion_m = free_.to_itself_m - bent_m;
         }
         const VolumeMap* const map =
             setting_->setup.volumes != nullptr ? setting_->setup.volumes->rotor.get() : nullptr;
@@ -307,6 +312,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
             lanes_->anchor[i][number_] = lanes_->vehicle[i][number_];
         }
         lanes_->free_motion_m[number_] = free_m;
+        lanes_->free_joint_motion_m[number_] = free_joint_motion_m;
         return Rejection::none;
     }
 
@@ -339,8 +345,8 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
     SpaceTrackRow<n>* track_;
     const SpaceWorld* description_ = nullptr;
     FlownSpaceWorld<n> world_{};
-    SpacePose looked_at_;        ///< where collisions were looked for last, and
-    double free_motion_m_ = -1;  ///< how far from there none can be
+    SpacePose looked_at_;            ///< where collisions were looked for last, and
+    SpaceChecker::FreeMotion free_;  ///< how far from there none can be
 };
 
 }  // namespace downwash::simulation

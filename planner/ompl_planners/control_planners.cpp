@@ -12,8 +12,8 @@
 
 #include "downwash/ompl_planners/flight_controls.hpp"
 #include "downwash/ompl_planners/ompl_parameters.hpp"
-#include "downwash/ompl_planners/seeded.hpp"
 #include "downwash/search/quiet_ompl.hpp"
+#include "downwash/search/seeded.hpp"
 #include "downwash/search/tree_record.hpp"
 
 namespace downwash::planning {

@@ -15,10 +15,10 @@
 #include <stdexcept>
 
 #include "downwash/ompl_planners/ompl_parameters.hpp"
-#include "downwash/ompl_planners/seeded.hpp"
 #include "downwash/search/free_air_cost.hpp"
 #include "downwash/search/ompl_space.hpp"
 #include "downwash/search/quiet_ompl.hpp"
+#include "downwash/search/seeded.hpp"
 #include "downwash/search/tree_record.hpp"
 #include "downwash/simulation/flight.hpp"
 

@@ -19,7 +19,8 @@ namespace downwash::planning {
 class SearchSpace;
 class SpaceSearchSpace;
 class PassageSampler;
-class NoPassages;
+template <class Family>
+class LevelWaysOf;
 class ProblemWorlds;
 class SpaceProblemWorlds;
 class StopFinder;
@@ -47,7 +48,7 @@ struct DOWNWASH_EXPORT Plane {
     using Obstruction = downwash::Obstruction;
     using TreeNode = downwash::TreeNode;
     using SearchSpace = planning::SearchSpace;
-    using PassageSampler = planning::PassageSampler;
+    using NarrowWays = PassageSampler;      ///< through which a tree grows
     using Execution = downwash::Execution;  ///< with direct aerodynamics
     using ProblemWorlds = planning::ProblemWorlds;
     using StopFinder = planning::StopFinder;
@@ -81,7 +82,7 @@ struct DOWNWASH_EXPORT Space {
     using Obstruction = SpaceObstruction;
     using TreeNode = SpaceTreeNode;
     using SearchSpace = SpaceSearchSpace;
-    using PassageSampler = NoPassages;
+    using NarrowWays = LevelWaysOf<Space>;
     using Execution = SpaceFlight;
     using ProblemWorlds = SpaceProblemWorlds;
     using StopFinder = NoStopFinder;

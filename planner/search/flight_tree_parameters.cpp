@@ -26,6 +26,7 @@ std::span<const FlightTreeParameters::Member> FlightTreeParameters::members() no
         Member{"local_bias", &P::local_bias},
         Member{"local_radius_m", &P::local_radius_m},
         Member{"passage_share", &P::passage_share},
+        Member{"way_share", &P::way_share},
         Member{"range_share", &P::range_share},
         Member{"optimism", &P::optimism},
         Member{"max_detour", &P::max_detour},

@@ -10,7 +10,7 @@ namespace downwash::planning {
 /// The numbers that RRT* of flights works with. What each means, its default and its range stand in algorithms(), under
 /// the same name.
 struct FlightTreeParameters {
-    double first_goal_bias, goal_bias, local_bias, local_radius_m, passage_share;
+    double first_goal_bias, goal_bias, local_bias, local_radius_m, passage_share, way_share;
     double range_share, optimism, max_detour, alternative_distance_m;
     double worthwhile_gain, final_gain;
     double batch_size, first_batch_size;

@@ -10,6 +10,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "downwash/search/search_space.hpp"
+#include "downwash/search/space_search_space.hpp"
+
 namespace downwash::planning {
 namespace {
 
@@ -19,8 +22,11 @@ using Turn = ob::SO2StateSpace::StateType;
 
 /// The translations as one space, then one for each joint that moves: a circle, or an interval where it has limits.
 /// Distances are those of SearchSpace, the root of weighted squares. An angle on a circle may be given in any turn.
+template <class SearchSpace>
 class ConfigurationSpace : public ob::CompoundStateSpace {
  public:
+    using Configuration = typename SearchSpace::Configuration;
+
     explicit ConfigurationSpace(const SearchSpace& space) : search_(space) {
         const auto position = std::make_shared<ob::RealVectorStateSpace>();
         addSubspace(position, 1);
@@ -55,6 +61,7 @@ class ConfigurationSpace : public ob::CompoundStateSpace {
 };
 
 /// Samples with the caller's generator.
+template <class SearchSpace>
 class Sampler : public ob::StateSampler {
  public:
     Sampler(const ob::StateSpace* states, const SearchSpace& space, Random& random)
@@ -73,7 +80,7 @@ class Sampler : public ob::StateSampler {
             }
             return sum;
         };
-        Configuration c = read(mean, search_);
+        auto c = read(mean, search_);
         for (std::size_t axis = 0; axis < search_.axes().size(); ++axis) {
             c[axis] += deviation * normal() / search_.axes()[axis].weight_m;
         }
@@ -86,6 +93,7 @@ class Sampler : public ob::StateSampler {
     Random& random_;
 };
 
+template <class SearchSpace>
 class Validity : public ob::StateValidityChecker {
  public:
     Validity(const ob::SpaceInformationPtr& information, const SearchSpace& space, QueryCounts& counts)
@@ -99,6 +107,7 @@ class Validity : public ob::StateValidityChecker {
 };
 
 /// Straight lines, checked so densely that no point of the robot moves farther than a step between two checks.
+template <class SearchSpace>
 class StraightMotion : public ob::MotionValidator {
  public:
     StraightMotion(const ob::SpaceInformationPtr& information, const SearchSpace& space, double step_m,
@@ -112,17 +121,17 @@ class StraightMotion : public ob::MotionValidator {
 
     bool checkMotion(const ob::State* from, const ob::State* to,
                      std::pair<ob::State*, double>& last_valid) const override {
-        const Configuration a = read(from, space_);
-        const Configuration b = space_.seen_from(a, read(to, space_));
+        const auto a = read(from, space_);
+        const auto b = space_.seen_from(a, read(to, space_));
         double motion_m = space_.travel_m(a, b);
         for (std::size_t axis = 0; axis < space_.axes().size(); ++axis) {
-            if (space_.axes()[axis].group == AxisGroup::joint) {
+            if (space_.axes()[axis].group != AxisGroup::translation) {
                 motion_m += 2 * space_.axes()[axis].weight_m * std::abs(b[axis] - a[axis]);
             }
         }
         const int steps = static_cast<int>(std::ceil(motion_m / step_m_)) + 1;
         for (int i = 1; i <= steps; ++i) {
-            const Configuration c = between(a, b, static_cast<double>(i) / steps);
+            const auto c = between(a, b, static_cast<double>(i) / steps);
             if (!space_.is_allowed(c, counts_)) {
                 last_valid.second = static_cast<double>(i - 1) / steps;
                 if (last_valid.first != nullptr) {
@@ -140,6 +149,7 @@ class StraightMotion : public ob::MotionValidator {
     QueryCounts& counts_;
 };
 
+template <class SearchSpace>
 class SampledGoal : public ob::GoalSampleableRegion {
  public:
     SampledGoal(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
@@ -153,7 +163,7 @@ class SampledGoal : public ob::GoalSampleableRegion {
     /// Some planners take every valid sample for a goal, so it has to be one: where no new one is found, the last;
     /// before there is any, the middle of the region, which the planner may find invalid.
     void sampleGoal(ob::State* state) const override {
-        if (const std::optional<Configuration> sample = space_.sample_goal(random_)) {
+        if (const auto sample = space_.sample_goal(random_)) {
             last_ = *sample;
         }
         write(last_.value_or(space_.moved_into_goal(space_.sample(random_), 0)), state, space_);
@@ -165,7 +175,7 @@ class SampledGoal : public ob::GoalSampleableRegion {
     const SearchSpace& space_;
     Random& random_;
     unsigned int max_samples_;
-    mutable std::optional<Configuration> last_;
+    mutable std::optional<typename SearchSpace::Configuration> last_;
 };
 
 }  // namespace
@@ -178,7 +188,8 @@ bool QueryCounts::note(Rejection rejection) noexcept {
     return rejection == Rejection::none;
 }
 
-void write(const Configuration& c, ob::State* state, const SearchSpace& space) {
+template <class SearchSpace>
+void write(const typename SearchSpace::Configuration& c, ob::State* state, const SearchSpace& space) {
     auto* compound = state->as<ob::CompoundState>();
     unsigned int translation = 0, joint = 1;
     for (std::size_t i = 0; i < space.axes().size(); ++i) {
@@ -193,10 +204,11 @@ void write(const Configuration& c, ob::State* state, const SearchSpace& space) {
     }
 }
 
-Configuration read(const ob::State* state, const SearchSpace& space) {
+template <class SearchSpace>
+typename SearchSpace::Configuration read(const ob::State* state, const SearchSpace& space) {
     const auto* compound = state->as<ob::CompoundState>();
     unsigned int translation = 0, joint = 1;
-    Configuration c;
+    typename SearchSpace::Configuration c{};
     for (std::size_t i = 0; i < space.axes().size(); ++i) {
         const SearchAxis& axis = space.axes()[i];
         if (axis.group == AxisGroup::translation) {
@@ -212,26 +224,42 @@ Configuration read(const ob::State* state, const SearchSpace& space) {
     return c;
 }
 
+template <class SearchSpace>
 ob::StateSpacePtr make_configuration_space(const SearchSpace& space, Random& random) {
-    const auto states = std::make_shared<ConfigurationSpace>(space);
+    const auto states = std::make_shared<ConfigurationSpace<SearchSpace>>(space);
     states->setStateSamplerAllocator([&space, &random](const ob::StateSpace* s) -> ob::StateSamplerPtr {
-        return std::make_shared<Sampler>(s, space, random);
+        return std::make_shared<Sampler<SearchSpace>>(s, space, random);
     });
     return states;
 }
 
+template <class SearchSpace>
 ob::SpaceInformationPtr make_space_information(const SearchSpace& space, Random& random, double motion_step_m,
                                                QueryCounts& counts) {
     auto information = std::make_shared<ob::SpaceInformation>(make_configuration_space(space, random));
-    information->setStateValidityChecker(std::make_shared<Validity>(information, space, counts));
-    information->setMotionValidator(std::make_shared<StraightMotion>(information, space, motion_step_m, counts));
+    information->setStateValidityChecker(std::make_shared<Validity<SearchSpace>>(information, space, counts));
+    information->setMotionValidator(
+        std::make_shared<StraightMotion<SearchSpace>>(information, space, motion_step_m, counts));
     information->setup();
     return information;
 }
 
+template <class SearchSpace>
 ob::GoalPtr make_goal_region(const ob::SpaceInformationPtr& information, const SearchSpace& space, Random& random,
                              unsigned int max_samples) {
-    return std::make_shared<SampledGoal>(information, space, random, max_samples);
+    return std::make_shared<SampledGoal<SearchSpace>>(information, space, random, max_samples);
 }
+
+template void write(const Configuration&, ob::State*, const SearchSpace&);
+template Configuration read(const ob::State*, const SearchSpace&);
+template ob::StateSpacePtr make_configuration_space(const SearchSpace&, Random&);
+template ob::SpaceInformationPtr make_space_information(const SearchSpace&, Random&, double, QueryCounts&);
+template ob::GoalPtr make_goal_region(const ob::SpaceInformationPtr&, const SearchSpace&, Random&, unsigned int);
+
+template void write(const SpaceConfiguration&, ob::State*, const SpaceSearchSpace&);
+template SpaceConfiguration read(const ob::State*, const SpaceSearchSpace&);
+template ob::StateSpacePtr make_configuration_space(const SpaceSearchSpace&, Random&);
+template ob::SpaceInformationPtr make_space_information(const SpaceSearchSpace&, Random&, double, QueryCounts&);
+template ob::GoalPtr make_goal_region(const ob::SpaceInformationPtr&, const SpaceSearchSpace&, Random&, unsigned int);
 
 }  // namespace downwash::planning

@@ -76,10 +76,4 @@ class PassageSampler {
     std::vector<Through> known_;  ///< points of passages that were found
 };
 
-/// For a family that does not look for narrow passages yet.
-class NoPassages {
- public:
-    explicit NoPassages(const SearchTaskOf<Space>& /*task*/) {}
-};
-
 }  // namespace downwash::planning

@@ -138,6 +138,7 @@ FlightStatisticsOf<Family>& FlightStatisticsOf<Family>::operator+=(const FlightS
 template <class Family>
 PlannedFlightsOf<Family>::PlannedFlightsOf(const SearchTask& task, std::function<bool()> is_over, int threads)
     : task_(task),
+      is_over_(is_over),
       goal_(task),
       objective_(task),
       limits_(motion_limits_of(task.problem)),

@@ -156,6 +156,8 @@ class PlannedFlightsOf {
     [[nodiscard]] const MotionLimits& limits() const noexcept { return limits_; }
 
     [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
+    /// What flights ask now and then; true ends them.
+    [[nodiscard]] const std::function<bool()>& is_over() const noexcept { return is_over_; }
     [[nodiscard]] const FlightStatistics& statistics() const noexcept { return statistics_; }
     /// Forgets counterexamples and begins to count anew.
     void forget();
@@ -180,6 +182,7 @@ class PlannedFlightsOf {
                 FlightStatistics& counts) const;
 
     const SearchTask& task_;
+    std::function<bool()> is_over_;
     ProblemGoal goal_;
     ProblemObjective objective_;
     const GoalRegion* other_goal_ = nullptr;

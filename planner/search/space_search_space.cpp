@@ -9,6 +9,7 @@
 #include "downwash/base/infinity.hpp"
 #include "downwash/controllers/space_duration.hpp"
 #include "downwash/scene/space_motion.hpp"
+#include "downwash/search/obstacle_labels.hpp"
 #include "downwash/simulation/space_pool.hpp"
 #include "downwash/simulation/space_tool.hpp"
 
@@ -212,6 +213,14 @@ Rejection SpaceSearchSpace::rejection_at(const Configuration& c, const SpacePose
         return left;
     }
     return model_.collisions().is_nearer_than(pose, margin_m_) ? Rejection::collision : Rejection::none;
+}
+
+bool SpaceSearchSpace::is_allowed(const Configuration& c, QueryCounts& counts) const {
+    const Rejection rejection = rejection_at(c);
+    if (rejection == Rejection::collision) {
+        count_collision(model_, level_at(c), margin_m_, counts.stopped_by);
+    }
+    return counts.note(rejection);
 }
 
 SpacePose SpaceSearchSpace::pose_along(const SpacePoint& point, bool tilts) const {

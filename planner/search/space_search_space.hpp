@@ -84,6 +84,9 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
         return rejection_at(configuration) == Rejection::none;
     }
 
+    /// See SearchSpace.
+    [[nodiscard]] bool is_allowed(const Configuration& configuration, QueryCounts& counts) const;
+
     /// The pose of a vehicle at a point of a reference: level or, if it tilts as the reference asks, along a + g.
     [[nodiscard]] SpacePose pose_along(const SpacePoint& point, bool tilts) const;
 

@@ -60,7 +60,7 @@ TreeGrowthOf<Family>::TreeGrowthOf(const FlightPoint& start, const SearchSpace& 
       flights_(flights),
       random_(random),
       sampler_(sampler),
-      passages_(flights.task()),
+      narrow_ways_(flights.task()),
       tree_(start, flights),
       nearest_to_goal_(&tree_.root()),
       nearest_distance_m_(flights.goal().distance_m(tree_.root().configuration)) {
@@ -79,8 +79,8 @@ void TreeGrowthOf<Family>::try_first(std::vector<Configuration> places) {
 
 /// The next point on the way through a passage that is due, or the first of a new way; nothing where it is the turn of
 /// other samples.
-template <class Family>
-auto TreeGrowthOf<Family>::point_of_passage() -> std::optional<ReferencePoint> {
+template <>
+auto TreeGrowthOf<Plane>::point_of_passage() -> std::optional<ReferencePoint> {
     if (!due_.empty() && due_.front().batch <= batch_) {
         const ReferencePoint point = due_.front().point;
         due_.pop_front();
@@ -89,27 +89,84 @@ auto TreeGrowthOf<Family>::point_of_passage() -> std::optional<ReferencePoint> {
     if (!random_.chance(parameters_.passage_share)) {
         return std::nullopt;
     }
-    if constexpr (std::is_same_v<typename Family::PassageSampler, NoPassages>) {
+    const auto distance_m = [this](const ReferencePoint& point) {
+        const Configuration place = configuration_of(point);
+        return space_.distance_m(tree_.nearest(place, 1).front()->configuration, place);
+    };
+    // A way between places that the tree has reached already is none worth knowing.
+    std::optional<Passage> passage = narrow_ways_.sample(random_, [&](const Passage& way) {
+        return std::max(distance_m(way.run_up), distance_m(way.run_out)) > parameters_.alternative_distance_m;
+    });
+    if (!passage) {
         return std::nullopt;
-    } else {
-        const auto distance_m = [this](const ReferencePoint& point) {
-            const Configuration place = configuration_of(point);
-            return space_.distance_m(tree_.nearest(place, 1).front()->configuration, place);
-        };
-        // A way between places that the tree has reached already is none worth knowing.
-        std::optional<Passage> passage = passages_.sample(random_, [&](const Passage& way) {
-            return std::max(distance_m(way.run_up), distance_m(way.run_out)) > parameters_.alternative_distance_m;
-        });
-        if (!passage) {
-            return std::nullopt;
-        }
-        if (distance_m(passage->run_out) < distance_m(passage->run_up)) {
-            passage = reversed(*passage);
-        }
-        due_.push_back({batch_ + 1, passage->through});
-        due_.push_back({batch_ + 2, passage->run_out});
-        return passage->run_up;
     }
+    if (distance_m(passage->run_out) < distance_m(passage->run_up)) {
+        passage = reversed(*passage);
+    }
+    due_.push_back({batch_ + 1, passage->through});
+    due_.push_back({batch_ + 2, passage->run_out});
+    return passage->run_up;
+}
+
+template <>
+auto TreeGrowthOf<Space>::point_of_passage() -> std::optional<ReferencePoint> {
+    return std::nullopt;
+}
+
+/// Looks for a new way of the level vehicle; whether there is one.
+template <>
+bool TreeGrowthOf<Space>::find_way() {
+    constexpr std::uint64_t max_iterations = 2000;
+    constexpr std::size_t first_wait = 16, most_doublings = 6;
+    way_.corners = narrow_ways_.find(random_, max_iterations, flights_.is_over());
+    way_.samples = 0;
+    way_.failures = way_.corners.empty() ? way_.failures + 1 : 0;
+    way_.samples_to_wait = way_.corners.empty() ? first_wait << std::min(way_.failures - 1, most_doublings) : 0;
+    for (std::size_t i = 0; i < way_.corners.size(); ++i) {
+        due_.push_back({batch_ + i, at_rest(way_.corners[i])});
+    }
+    return !way_.corners.empty();
+}
+
+/// A place near a corner of the way, in the goal region for the last one.
+template <class Family>
+auto TreeGrowthOf<Family>::beside_corner(std::size_t corner) -> Configuration {
+    const Configuration& place = way_.corners[corner];
+    const double radius_m = parameters_.local_radius_m * random_.uniform(0, 1) * random_.uniform(0, 1);
+    if (corner + 1 == way_.corners.size()) {
+        return flights_.goal().sample_near(place, radius_m, random_).value_or(place);
+    }
+    return sampler_.near(place, radius_m);
+}
+
+/// The next corner of a way of the level vehicle, each in a batch of its own; meanwhile places beside those before it.
+/// Nothing where it is the turn of other samples.
+template <>
+auto TreeGrowthOf<Space>::point_of_way() -> std::optional<ReferencePoint> {
+    constexpr std::size_t samples_beside_a_corner = 4;
+    if (!random_.chance(parameters_.way_share)) {
+        return std::nullopt;
+    }
+    if (way_.samples_to_wait > 0) {
+        --way_.samples_to_wait;
+        return std::nullopt;
+    }
+    if (due_.empty() && way_.samples >= samples_beside_a_corner * way_.corners.size() && !find_way()) {
+        return std::nullopt;
+    }
+    if (!due_.empty() && due_.front().batch <= batch_) {
+        const ReferencePoint point = due_.front().point;
+        due_.pop_front();
+        return point;
+    }
+    ++way_.samples;
+    const std::size_t tried = way_.corners.size() - due_.size();
+    return at_rest(beside_corner(static_cast<std::size_t>(random_.uniform(0, static_cast<double>(tried)))));
+}
+
+template <>
+auto TreeGrowthOf<Plane>::point_of_way() -> std::optional<ReferencePoint> {
+    return std::nullopt;
 }
 
 /// Where the next sample leads; nothing where none is found.
@@ -117,6 +174,11 @@ template <class Family>
 auto TreeGrowthOf<Family>::aim() -> std::optional<ReferencePoint> {
     if (parameters_.passage_share > 0 && first_places_.empty()) {
         if (const std::optional<ReferencePoint> point = point_of_passage()) {
+            return point;
+        }
+    }
+    if (std::is_same_v<Family, Space> && !has_plan() && first_places_.empty()) {
+        if (const std::optional<ReferencePoint> point = point_of_way()) {
             return point;
         }
     }

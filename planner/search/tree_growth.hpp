@@ -8,6 +8,7 @@
 
 #include "downwash/search/flight_tree.hpp"
 #include "downwash/search/flight_tree_parameters.hpp"
+#include "downwash/search/level_ways.hpp"
 #include "downwash/search/passage_sampler.hpp"
 #include "downwash/search/place_sampler.hpp"
 #include "downwash/search/random.hpp"
@@ -80,6 +81,9 @@ class TreeGrowthOf {
 
     [[nodiscard]] std::optional<ReferencePoint> aim();
     [[nodiscard]] std::optional<ReferencePoint> point_of_passage();
+    [[nodiscard]] std::optional<ReferencePoint> point_of_way();
+    [[nodiscard]] Configuration beside_corner(std::size_t corner);
+    [[nodiscard]] bool find_way();
     [[nodiscard]] std::optional<Configuration> target();
     [[nodiscard]] std::optional<Configuration> target_beside_plan();
     [[nodiscard]] std::size_t neighbour_count() const;
@@ -95,7 +99,7 @@ class TreeGrowthOf {
     PlannedFlights& flights_;
     Random& random_;
     PlaceSampler& sampler_;
-    typename Family::PassageSampler passages_;
+    typename Family::NarrowWays narrow_ways_;
     /// Points on the way through a passage, each to be tried in a later batch than the one before.
     struct Due {
         std::uint64_t batch;
@@ -103,6 +107,14 @@ class TreeGrowthOf {
     };
     std::deque<Due> due_;
     std::uint64_t batch_ = 0;  ///< number of the batch under way
+    /// The way of the level vehicle along which samples are drawn.
+    struct LevelWay {
+        std::vector<Configuration> corners;
+        std::size_t samples = 0;          ///< that have been drawn along it
+        std::size_t samples_to_wait = 0;  ///< of the others, until another one is looked for
+        std::size_t failures = 0;         ///< in a row
+    };
+    LevelWay way_;
     FlightTree tree_;
     std::vector<Configuration> first_places_;  ///< yet to be tried, the next one last
     std::optional<std::vector<FlightPoint>> known_plan_;

@@ -41,7 +41,7 @@ TEST_CASE("No query of a robot in space allocates") {
         const long before = allocations;
         const double clearance = checker.clearance_m(pose);
         const bool is_near = checker.is_nearer_than(pose, 0.3) || checker.comes_nearer_between(pose, next, 0.05) ||
-                             checker.free_motion_m(pose, 0.1, 1) <= 0;
+                             checker.free_motion(pose, 0.1, 1).is_none();
         const bool is_known = checker.nearest_obstacle(pose, 1).has_value() || checker.self_clearance_m(pose) > 0 ||
                               checker.touching_bodies(pose).has_value();
         const long made = allocations - before;

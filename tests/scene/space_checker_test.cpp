@@ -105,7 +105,8 @@ TEST_CASE("A robot in space without obstacles has infinite clearance, one with u
     const SpaceChecker checker = checker_of({}, {{{Sphere{0.1}, {}}}, {}});
     CHECK(checker.clearance_m({}) == infinity);
     CHECK(checker.clearance_m({}, 3) == 3);
-    CHECK(checker.free_motion_m({}, 0.1, 3) == 3);
+    CHECK(checker.free_motion({}, 0.1, 3).to_obstacles_m == 3);
+    CHECK(checker.free_motion({}, 0.1, 3).to_itself_m == 3);
     CHECK_FALSE(checker.is_nearer_than({}, 1e9));
     CHECK_FALSE(checker.nearest_obstacle({}, infinity));
     CHECK_FALSE(checker.comes_nearer_between({}, at({1e3, 0, 0}), 1));
@@ -280,7 +281,8 @@ TEST_CASE("A two-link arm that folds touches the multirotor and never its neighb
         CHECK_FALSE(checker.touching_bodies(folded_by(1.2)));
         CHECK(checker.comes_nearer_between(folded_by(0), folded_by(1.2), 0));
         CHECK_FALSE(checker.comes_nearer_between(folded_by(0), folded_by(low - 2e-3), 0));
-        CHECK(checker.free_motion_m(folded_by(0), 0, 1) == Approx(checker.self_clearance_m(folded_by(0))));
+        CHECK(checker.free_motion(folded_by(0), 0, 1).to_itself_m == Approx(checker.self_clearance_m(folded_by(0))));
+        CHECK(checker.free_motion(folded_by(0), 0, 1).to_obstacles_m == 1);
     }
 }
 
@@ -441,14 +443,17 @@ TEST_CASE("Until it has moved by its free motion a robot keeps the margin") {
         const SpaceChecker checker(std::make_shared<const Scene>(dice.obstacles(2)), robot);
         const SpacePose from = dice.space_pose();
         const double margin_m = dice.between(0, 0.1);
-        const double free_m = checker.free_motion_m(from, margin_m, 0.4);
+        const SpaceChecker::FreeMotion free = checker.free_motion(from, margin_m, 0.4);
+        const double free_m = std::min(free.to_obstacles_m, free.to_itself_m);
         CHECK(free_m >= 0);
-        CHECK(free_m <= 0.4);
+        CHECK(std::max(free.to_obstacles_m, free.to_itself_m) <= 0.4);
         CHECK((free_m > 0 || checker.is_nearer_than(from, margin_m + 1e-7)));
         const SpacePose to = near_to(from, 1, dice);
-        const double motion_to_m = motion_m(checker.reach(), change_between(from, to));
+        const SpaceChange<double> change = change_between(from, to);
         if (free_m > 1e-3) {
-            const SpacePose then = on_the_way(from, to, std::min(1.0, (free_m - 1e-6) / motion_to_m));
+            const double share = std::min((free.to_obstacles_m - 1e-6) / motion_m(checker.reach(), change),
+                                          (free.to_itself_m - 1e-6) / joint_motion_m(checker.reach(), change));
+            const SpacePose then = on_the_way(from, to, std::min(1.0, share));
             CHECK_FALSE(checker.is_nearer_than(then, margin_m));
             ++looked;
         }
@@ -469,7 +474,7 @@ TEST_CASE("A pose in space that is not finite, or without an attitude, is in con
         for (const SpacePose& pose : poses) {
             CHECK(checker.is_nearer_than(pose, 0));
             CHECK(checker.clearance_m(pose) == -infinity);
-            CHECK(checker.free_motion_m(pose, 0, 1) == 0);
+            CHECK(checker.free_motion(pose, 0, 1).is_none());
             CHECK(checker.comes_nearer_between({}, pose, 0));
             CHECK_FALSE(checker.nearest_obstacle(pose, infinity));
         }
