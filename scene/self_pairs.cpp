@@ -22,11 +22,12 @@ struct JointBox {
     double middle_rad(std::size_t joint) const { return 0.5 * (low_rad[joint] + high_rad[joint]); }
 };
 
-/// Within the limits, and at most one turn of each joint.
-JointBox joint_box(const SpaceArm& arm) {
+/// Within the limits or a little beyond, and at most one turn of each joint.
+JointBox joint_box(const SpaceArm& arm, double beyond_rad) {
     JointBox box;
     for (std::size_t i = 0; i < arm.links(); ++i) {
-        const double lower = arm.lower_limit_rad(i), upper = arm.upper_limit_rad(i);
+        const double lower = arm.lower_limit_rad(i) - beyond_rad;
+        const double upper = arm.upper_limit_rad(i) + beyond_rad;
         const bool is_whole_turn = !(upper - lower < 2 * pi);
         box.low_rad[i] = is_whole_turn ? -pi : lower;
         box.high_rad[i] = is_whole_turn ? pi : upper;
@@ -123,7 +124,8 @@ std::size_t carrier_of(std::size_t frame, const SpaceReach& reach) {
 }  // namespace
 
 SelfPairs self_pairs(const SpaceArm& arm, const std::vector<RobotPiece>& pieces, const SpaceReach& reach) {
-    const JointBox box = joint_box(arm);
+    const JointBox within = joint_box(arm, 0);
+    const JointBox swung = joint_box(arm, joint_swing_rad);
     SelfPairs pairs;
     for (std::uint32_t first = 0; first < pieces.size(); ++first) {
         for (std::uint32_t second = first + 1; second < pieces.size(); ++second) {
@@ -133,11 +135,11 @@ SelfPairs self_pairs(const SpaceArm& arm, const std::vector<RobotPiece>& pieces,
                 continue;
             }
             const Pair pair(arm, reach, a, b);
-            if (pair.touch_always(box)) {
+            if (pair.touch_always(within)) {
                 continue;
             }
             pairs.beyond_limits.push_back({first, second});
-            if (pair.may_touch(box)) {
+            if (pair.may_touch(swung)) {
                 pairs.within_limits.push_back({first, second});
             }
         }

@@ -18,7 +18,8 @@ struct SelfPair {
 /// what it is mounted on, where links without a solid count as part of what they are mounted on. Nor those that touch
 /// at each of 256 sets of joint angles, spread evenly within the limits: they overlap by design.
 struct SelfPairs {
-    std::vector<SelfPair> within_limits;  ///< those that may touch while all joints are within their limits
+    std::vector<SelfPair>
+        within_limits;  ///< those that may touch while no joint is beyond its limits by more than joint_swing_rad
     std::vector<SelfPair> beyond_limits;  ///< all
 };
 

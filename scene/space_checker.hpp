@@ -73,7 +73,7 @@ class DOWNWASH_EXPORT SpaceChecker {
     struct FreeMotion {
         double to_obstacles_m = 0;  ///< by motion_m(): before, it is not nearer than the margin to an obstacle
         double to_itself_m = 0;     ///< by joint_motion_m(): before, it does not touch itself, if joints within their
-                                    ///< limits stay within them
+                                    ///< limits stay within them, up to joint_swing_rad
 
         [[nodiscard]] bool is_none() const noexcept { return to_obstacles_m <= 0 || to_itself_m <= 0; }
     };

@@ -107,7 +107,8 @@ SpaceFrames SpaceArm::frames_seen_from(std::size_t from, std::size_t to,
 
 bool SpaceArm::is_within_limits(const std::array<double, max_links>& joints_rad) const noexcept {
     for (std::size_t i = 0; i < links(); ++i) {
-        if (!(joints_rad[i] >= joints_[i].lower_rad && joints_rad[i] <= joints_[i].upper_rad)) {
+        if (!(joints_rad[i] >= joints_[i].lower_rad - joint_swing_rad &&
+              joints_rad[i] <= joints_[i].upper_rad + joint_swing_rad)) {
             return false;
         }
     }

@@ -40,7 +40,7 @@ class SpaceArm {
     [[nodiscard]] SpaceFrames frames_seen_from(std::size_t from, std::size_t to,
                                                const std::array<double, max_links>& joints_rad) const noexcept;
 
-    /// Whether every joint is within its limits.
+    /// Whether no joint is farther beyond its limits than an arm that hovers at one swings about it, joint_swing_rad.
     [[nodiscard]] bool is_within_limits(const std::array<double, max_links>& joints_rad) const noexcept;
     [[nodiscard]] double lower_limit_rad(std::size_t joint) const noexcept { return joints_[joint].lower_rad; }
     [[nodiscard]] double upper_limit_rad(std::size_t joint) const noexcept { return joints_[joint].upper_rad; }

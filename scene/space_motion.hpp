@@ -10,6 +10,10 @@
 
 namespace downwash {
 
+/// An arm that hovers at a limit swings about it. The solids that may touch are those that may up to this angle beyond
+/// the limits of the joints [rad].
+inline constexpr double joint_swing_rad = 0.1;
+
 /// How far the points of a robot are from what turns them, at most, at any joint angles [m].
 struct SpaceReach {
     /// The bodies of the multirotor or of one link.

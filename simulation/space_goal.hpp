@@ -31,15 +31,18 @@ struct SpacePoseGoal {
     double tolerance_rad = default_angle_tolerance_rad;  ///< of the one turn between both attitudes, > 0
 };
 
+/// 10 degrees: the target is in the middle third of a picture 60 degrees wide. Half of that would be less than what
+/// offsets of joints and attitude, and gusts, leave of an aim.
+inline constexpr double default_aim_tolerance_rad = 0.17453292519943295;
+
 /// A camera, the end effector, that looks at a point from a distance.
 struct SpaceCameraGoal {
     Vector3 target_m = {};
     double nearest_m = 0, farthest_m = 0;  ///< distance of the end effector from the target, 0 < nearest < farthest
     std::optional<Vector3> direction;      ///< in which it should look, of any length but zero; empty: any
     double view_cone_rad = 0.5235987755982988;  ///< greatest angle between that direction and the line to the target
-    double aim_tolerance_rad =
-        default_angle_tolerance_rad;  ///< greatest angle between the tool's direction and the line
-    bool sees = true;                 ///< whether no obstacle may stand between camera and target
+    double aim_tolerance_rad = default_aim_tolerance_rad;  ///< greatest angle between the tool's direction and the line
+    bool sees = true;  ///< whether no obstacle may stand between camera and target
 };
 
 /// The multirotor and its arm; an empty coordinate is free.

@@ -92,7 +92,7 @@ struct SpaceKernelModel {
     const void* law;  ///< of the tick, of the type that the kernel was compiled for
     dynamics::EqualSpaceSteps step;
     SpaceReach reach;                                                ///< of bodies and hubs
-    double joint_low_rad[room_for<n>], joint_high_rad[room_for<n>];  ///< limits; infinite without
+    double joint_low_rad[room_for<n>], joint_high_rad[room_for<n>];  ///< until where checks may be left out
     double least_upright_cosine;                                     ///< of unstable_pitch_rad
     double max_state, max_result;                                    ///< see execution.hpp
     SpaceVolumeViews volumes;

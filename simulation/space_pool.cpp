@@ -166,11 +166,12 @@ struct SpaceFamily {
         model.tick = simulation::make_space_tick_model<n>(setup.robot, setup.aero);
         model.step = {dynamics::joint_steps(model.tick.nominal.plant, model.tick.tick_s)};
         model.reach = reach_of(setup);
+        const double beyond_rad = setup.rules && setup.rules->keeps_joint_limits ? 0 : joint_swing_rad;
         for (int i = 0; i < n; ++i) {
             const SpaceLinkLimits& link = setup.robot.links[static_cast<std::size_t>(i)];
             const bool counts = setup.checker != nullptr && link.is_limited;
-            model.joint_low_rad[i] = counts ? link.lower_limit_rad : -infinity;
-            model.joint_high_rad[i] = counts ? link.upper_limit_rad : infinity;
+            model.joint_low_rad[i] = counts ? link.lower_limit_rad - beyond_rad : -infinity;
+            model.joint_high_rad[i] = counts ? link.upper_limit_rad + beyond_rad : infinity;
         }
         model.least_upright_cosine = lane::sin_cos(unstable_pitch_rad).cosine;
         model.max_state = max_state;

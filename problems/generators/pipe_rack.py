@@ -1,6 +1,6 @@
 """A pipe rack of a plant: cross it between its tiers, to a flange."""
 
-from .problem_text import Problem, goal, number, one
+from .problem_text import TOLERANCE_M, Problem, goal, number, one
 
 WIDTH, BENT = 6.0, 6.0
 TIERS = 4.5, 6.5  # tops of the beams
@@ -110,7 +110,7 @@ def make(name="pipe_rack", random=None):
     near = -1 if y > 0 else 1
     problem.start = {"x_m": -bent / 2, "y_m": near * (width / 2 + 2), "z_m": 1.5, "yaw_deg": -near * 90}
     at = x, y, z + FLANGES[size] / 2 + TOOL
-    pose = {"position_m": at, "rpy_deg": (0, 0, -near * 90), "tolerance_m": 0.03, "tolerance_deg": 10}
+    pose = {"position_m": at, "rpy_deg": (0, 0, -near * 90), "tolerance_m": TOLERANCE_M, "tolerance_deg": 10}
     problem.goal = one(goal("pose", pose))
     return problem
 
