@@ -275,7 +275,8 @@ Certificate SpaceProblemWorlds::tested(const SpacePlan& whole, std::size_t visit
                                        const StopCondition& is_over, const WorldCounter& counter,
                                        CertificateRecord record) {
     constexpr std::uint64_t chunk = 64;     // a bad plan fails in the first of them
-    constexpr std::size_t flown_again = 2;  // with direct aerodynamics: volumes are not the last word
+    // With direct aerodynamics: volumes are not the last word. A screening is none either.
+    const std::size_t flown_again = first_world == first_screening ? 0 : 2;
     bool is_checked = false;
     try {
         for (;;) {

@@ -16,6 +16,7 @@
 #include "downwash/problems/shared_checks.hpp"
 #include "downwash/problems/space_goal_parameters.hpp"
 #include "downwash/problems/space_goal_warnings.hpp"
+#include "downwash/problems/space_hover_warnings.hpp"
 #include "downwash/problems/space_problem.hpp"
 #include "downwash/problems/space_problem_model.hpp"
 #include "downwash/problems/space_problem_parameters.hpp"
@@ -400,6 +401,7 @@ Errors space_problem_warnings(const SpaceProblem& problem) {
     }
     append(warnings, no_margin(problem));
     append(warnings, space_goal_warnings(problem));
+    append(warnings, space_hover_warnings(problem));
     return warnings;
 }
 

@@ -42,7 +42,7 @@ struct SpaceCameraGoal {
     std::optional<Vector3> direction;      ///< in which it should look, of any length but zero; empty: any
     double view_cone_rad = 0.5235987755982988;  ///< greatest angle between that direction and the line to the target
     double aim_tolerance_rad = default_aim_tolerance_rad;  ///< greatest angle between the tool's direction and the line
-    bool sees = true;  ///< whether no obstacle may stand between camera and target
+    bool sees = true;                                      ///< whether no obstacle may stand between camera and target
 };
 
 /// The multirotor and its arm; an empty coordinate is free.

@@ -53,6 +53,22 @@ TEST_CASE("a goal in space that nothing meets freely is a warning with what is i
                                Contains("; the nearest goal found is 1.6 m away, with position_m ["));
 }
 
+TEST_CASE("a goal that a hover misses in many worlds is a warning, a wider one and one without a certificate are not") {
+    const std::string narrow = edited(good_space_problem, "position_m: [3, -2, 2.5], tolerance_m: 0.1",
+                                      "position_m: [3, -2, 2.5], tolerance_m: 0.02");
+    const auto in_worlds = [](const std::string& problem, const std::string& planner) {
+        return warnings_of(problem + "uncertainty: {}\n" + planner, std::string(good_space_robot));
+    };
+    const std::vector<std::string> missed = in_worlds(narrow, "");
+    REQUIRE(missed.size() == 1);
+    CHECK_THAT(missed[0], StartsWith("12:3: goal.end_effector is missed in ") &&
+                              Contains(" of 512 worlds by a vehicle that hovers in its middle") &&
+                              Contains("widen its tolerances"));
+    CHECK(in_worlds(narrow, "planner: {certify: false}\n").empty());
+    CHECK(in_worlds(edited(narrow, "tolerance_m: 0.02", "tolerance_m: 0.3"), "").empty());
+    CHECK(warnings_of(narrow, std::string(good_space_robot)).empty());
+}
+
 TEST_CASE("one alternative that can be met is enough") {
     const std::string near = "{end_effector: {position_m: [3, -2, 2.5]}}",
                       far = "{end_effector: {position_m: [0, 0, 2]}}";
