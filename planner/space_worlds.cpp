@@ -274,7 +274,7 @@ void SpaceProblemWorlds::fly_directly(const SpacePlan& plan, std::size_t visits,
 Certificate SpaceProblemWorlds::tested(const SpacePlan& whole, std::size_t visits, std::uint64_t first_world,
                                        const StopCondition& is_over, const WorldCounter& counter,
                                        CertificateRecord record) {
-    constexpr std::uint64_t chunk = 64;     // a bad plan fails in the first of them
+    constexpr std::uint64_t chunk = 64;  // a bad plan fails in the first of them
     // With direct aerodynamics: volumes are not the last word. A screening is none either.
     const std::size_t flown_again = first_world == first_screening ? 0 : 2;
     bool is_checked = false;
