@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "downwash/base/infinity.hpp"
-#include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/planner/certificate_record.hpp"
 #include "downwash/planner/family_parts.hpp"
@@ -138,18 +137,9 @@ SpaceProblemWorlds::Vehicles SpaceProblemWorlds::starts_in(std::span<const Space
 }
 
 SearchWorldsOf<Space> SpaceProblemWorlds::for_search(const CourseOf<Space>& before) {
-    SearchWorldsOf<Space> search;
-    search.worlds = search_worlds(problem_);
-    for (const std::optional<AnySpaceState>& vehicle : vehicles_after(before, search.worlds)) {
-        if (!vehicle) {
-            throw_input_error(
-                "is so wide that the vehicle cannot hover at its start in one of the worlds of the search: "
-                "expected less, or a controller that bears it",
-                "uncertainty");
-        }
-        search.start.push_back(*vehicle);
-    }
-    return search;
+    std::vector<SpaceWorld> worlds = search_worlds(problem_);
+    const Vehicles vehicles = vehicles_after(before, worlds);
+    return worlds_of_search<Space>(std::move(worlds), vehicles);
 }
 
 SpaceProblemWorlds::Vehicles SpaceProblemWorlds::vehicles_after(const CourseOf<Space>& before,
@@ -175,21 +165,11 @@ SpaceProblemWorlds::Vehicles SpaceProblemWorlds::vehicles_after(const CourseOf<S
 
 std::vector<CounterexampleOf<Space>> SpaceProblemWorlds::counterexamples(const Certificate& certificate,
                                                                          const CourseOf<Space>& before) {
-    constexpr std::size_t most = 4;
     std::vector<SpaceWorld> worlds;
-    for (const WorldSample& sample : certificate.worst) {
-        if (sample.outcome != Outcome::ok && sample.goal == before.goals.size() && worlds.size() < most) {
-            worlds.push_back(world(sample.world));
-        }
+    for (const std::uint64_t index : failed_on_way_to(before.goals.size(), certificate)) {
+        worlds.push_back(world(index));
     }
-    const Vehicles vehicles = vehicles_after(before, worlds);
-    std::vector<CounterexampleOf<Space>> counterexamples;
-    for (std::size_t i = 0; i < worlds.size(); ++i) {
-        if (vehicles[i]) {
-            counterexamples.push_back({worlds[i], *vehicles[i]});
-        }
-    }
-    return counterexamples;
+    return counterexamples_of<Space>(worlds, vehicles_after(before, worlds));
 }
 
 std::vector<WorldSample> SpaceProblemWorlds::fly(const SpacePlan& plan, std::size_t visits, std::uint64_t first_world,

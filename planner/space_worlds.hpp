@@ -12,7 +12,7 @@
 #include "downwash/planner/course.hpp"
 #include "downwash/planner/planner_model.hpp"
 #include "downwash/planner/worlds.hpp"
-#include "downwash/search/fleet.hpp"
+#include "downwash/planner/worlds_of_search.hpp"
 #include "downwash/simulation/space_pool.hpp"
 
 namespace downwash::planning {
@@ -35,7 +35,7 @@ class SpaceProblemWorlds {
     [[nodiscard]] std::size_t goals() const noexcept { return problem_.goals.size(); }
 
  private:
-    using Vehicles = std::vector<std::optional<AnySpaceState>>;
+    using Vehicles = VehiclesOf<Space>;
 
     /// A pool of flights to a goal, among surfaces or, if the planner's own model knows of none, without.
     [[nodiscard]] SpacePool& pool(std::size_t goal, bool among_surfaces);

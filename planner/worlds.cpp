@@ -7,7 +7,6 @@
 #include <span>
 #include <utility>
 
-#include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 #include "downwash/planner/certificate_record.hpp"
 #include "downwash/planner/search_quantiles.hpp"
@@ -63,24 +62,13 @@ std::vector<FlownWorld> search_worlds(const Problem& problem) {
 }
 
 SearchWorlds ProblemWorlds::for_search(const Course& before) {
-    SearchWorlds search;
-    search.worlds = search_worlds(problem_);
-    for (const std::optional<FlightState>& vehicle : vehicles_after(before, search.worlds)) {
-        if (!vehicle) {
-            throw_input_error(
-                "is so wide that the vehicle cannot hover at its start in one of the worlds of the search: "
-                "expected less, or a controller that bears it",
-                "uncertainty");
-        }
-        search.start.push_back(*vehicle);
-    }
-    return search;
+    std::vector<FlownWorld> worlds = search_worlds(problem_);
+    const VehiclesOf<Plane> vehicles = vehicles_after(before, worlds);
+    return worlds_of_search<Plane>(std::move(worlds), vehicles);
 }
 
-/// Nothing for worlds in which the vehicle cannot hover at its start, or fly the course.
-std::vector<std::optional<FlightState>> ProblemWorlds::vehicles_after(const Course& before,
-                                                                      std::span<const FlownWorld> worlds) {
-    std::vector<std::optional<FlightState>> vehicles = own_flights().starts_in(worlds);
+VehiclesOf<Plane> ProblemWorlds::vehicles_after(const Course& before, std::span<const FlownWorld> worlds) {
+    VehiclesOf<Plane> vehicles = own_flights().starts_in(worlds);
     if (before.plan.reference.empty()) {
         return vehicles;
     }
@@ -100,22 +88,11 @@ std::vector<std::optional<FlightState>> ProblemWorlds::vehicles_after(const Cour
 }
 
 std::vector<Counterexample> ProblemWorlds::counterexamples(const Certificate& certificate, const Course& before) {
-    constexpr std::size_t most = 4;
     std::vector<FlownWorld> worlds;
-    for (const WorldSample& sample : certificate.worst) {
-        const bool is_failure = sample.outcome != Outcome::ok && sample.goal == before.goals.size();
-        if (is_failure && worlds.size() < most) {
-            worlds.push_back(world(sample.world));
-        }
+    for (const std::uint64_t index : failed_on_way_to(before.goals.size(), certificate)) {
+        worlds.push_back(world(index));
     }
-    const std::vector<std::optional<FlightState>> vehicles = vehicles_after(before, worlds);
-    std::vector<Counterexample> counterexamples;
-    for (std::size_t i = 0; i < worlds.size(); ++i) {
-        if (vehicles[i]) {
-            counterexamples.push_back({worlds[i], *vehicles[i]});
-        }
-    }
-    return counterexamples;
+    return counterexamples_of<Plane>(worlds, vehicles_after(before, worlds));
 }
 
 FlownWorld ProblemWorlds::world(std::uint64_t index) const {

@@ -13,7 +13,7 @@
 #include "downwash/planner/planner_model.hpp"
 #include "downwash/planner/solve_options.hpp"
 #include "downwash/planner/world_flights.hpp"
-#include "downwash/search/fleet.hpp"
+#include "downwash/planner/worlds_of_search.hpp"
 
 namespace downwash::planning {
 
@@ -69,8 +69,8 @@ class DOWNWASH_EXPORT ProblemWorlds {
 
  private:
     [[nodiscard]] WorldFlights& own_flights() noexcept { return in_free_air_ ? *in_free_air_ : flights_; }
-    [[nodiscard]] std::vector<std::optional<FlightState>> vehicles_after(const Course& before,
-                                                                         std::span<const FlownWorld> worlds);
+    /// Nothing for worlds in which the vehicle cannot hover at its start, or fly the course.
+    [[nodiscard]] VehiclesOf<Plane> vehicles_after(const Course& before, std::span<const FlownWorld> worlds);
     [[nodiscard]] FlownWorld world(std::uint64_t index) const;
 
     /// Flights of one plan for a certificate or a screening.

@@ -38,10 +38,6 @@ constexpr std::array<const char*, 3> axis_names{"x_m", "y_m", "z_m"};
 
 using problems::rounded;
 
-double length_of(const Vector3& v) {
-    return std::sqrt(dot(v, v));
-}
-
 Errors reversed_bounds(const SpaceProblem& p) {
     Errors errors;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "downwash/base/direction.hpp"
+
 namespace downwash {
 namespace {
 
@@ -150,13 +152,6 @@ Bracket core_distance(const Convex& a, const Convex& b, double enough, double be
         }
     }
     return bracket;
-}
-
-/// The vector over its length, first scaled so that no square over- or underflows.
-Vector3 unit(const Vector3& v) {
-    const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-    const Vector3 scaled{v[0] / largest, v[1] / largest, v[2] / largest};
-    return (1 / std::sqrt(dot(scaled, scaled))) * scaled;
 }
 
 struct ConvexMaker {

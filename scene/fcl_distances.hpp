@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to scene/: collisions and clearances by FCL. Only fcl_distances.cpp sees FCL's headers.
+// Private to scene/: collisions and clearances by FCL, whose headers fcl_*.cpp alone see.
 
 #include <cstddef>
 #include <cstdint>

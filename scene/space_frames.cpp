@@ -4,24 +4,14 @@
 #include <cmath>
 #include <iterator>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
 namespace {
 
-double length_of(const Vector3& v) {
-    return std::sqrt(dot(v, v));
-}
-
 double distance_from_axis(const Vector3& p, const Vector3& axis) {
     return length_of(cross(axis, p));
-}
-
-/// The vector over its length, first scaled so that no square over- or underflows.
-Vector3 unit(const Vector3& v) {
-    const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-    const Vector3 scaled{v[0] / largest, v[1] / largest, v[2] / largest};
-    return (1 / length_of(scaled)) * scaled;
 }
 
 /// The rotation by an angle about a vector of length 1 (Rodrigues).

@@ -4,20 +4,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
 namespace {
 
-constexpr double turn_rad = 2 * std::numbers::pi;
+constexpr double full_turn_rad = 2 * std::numbers::pi;
 /// Vectors of length 1 that are nearer to each other are the same.
 constexpr double rounding = 1e-12;
 constexpr Vector3 up{0, 0, 1};
-
-Vector3 unit(const Vector3& v) {
-    const Vector3 scaled = (1 / std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])})) * v;
-    return (1 / lane::sqrt(dot(scaled, scaled))) * scaled;
-}
 
 /// Rodrigues.
 Vector3 turned_about(const Vector3& axis, double angle_rad, const Vector3& v) {
@@ -44,10 +40,10 @@ double elevation_of(const Vector3& v) {
 
 /// The turns by whole circles that bring a range into another one.
 void add_within(AngleRanges& found, const AngleRange& one, const AngleRange& range) {
-    for (double turns = std::ceil((range.low_rad - one.high_rad) / turn_rad - rounding);
-         one.low_rad + turns * turn_rad <= range.high_rad + rounding && found.count < AngleRanges::most; ++turns) {
-        const double low = std::clamp(one.low_rad + turns * turn_rad, range.low_rad, range.high_rad);
-        const double high = std::clamp(one.high_rad + turns * turn_rad, range.low_rad, range.high_rad);
+    for (double turns = std::ceil((range.low_rad - one.high_rad) / full_turn_rad - rounding);
+         one.low_rad + turns * full_turn_rad <= range.high_rad + rounding && found.count < AngleRanges::most; ++turns) {
+        const double low = std::clamp(one.low_rad + turns * full_turn_rad, range.low_rad, range.high_rad);
+        const double high = std::clamp(one.high_rad + turns * full_turn_rad, range.low_rad, range.high_rad);
         found.all[found.count++] = {low, high};
     }
 }
@@ -367,8 +363,7 @@ std::optional<JointAngles> SpaceArmAngles::drawn_with(const Vector3& of_hand, co
     }
     const auto [sine, cosine] = lane::sin_cos(random.uniform(elevation.low_rad, elevation.high_rad));
     const auto [roll_sine, roll_cosine] = lane::sin_cos(random.uniform(-std::numbers::pi, std::numbers::pi));
-    const Vector3 some = std::abs(of_hand[0]) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
-    const Vector3 first = unit(cross(of_hand, some)), second = cross(of_hand, first);
+    const Vector3 first = across(of_hand), second = cross(of_hand, first);
     const Vector3 up_in_hand = sine * of_hand + cosine * (roll_cosine * first + roll_sine * second);
     return solved(at, inner, outer, up_in_hand,
                   [&](const AngleRanges& ranges, double /*before*/) { return ranges.drawn(random); });

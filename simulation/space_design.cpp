@@ -5,9 +5,13 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <iterator>
 #include <numbers>
 
+#include "downwash/base/infinity.hpp"
+#include "downwash/base/key_error.hpp"
 #include "downwash/dynamics/plant_model.hpp"
+#include "downwash/simulation/space_hover.hpp"
 
 namespace downwash {
 namespace {
@@ -69,6 +73,47 @@ MatrixXd mass_matrix(const SpacePlant& plant, const std::vector<double>& joints_
 /// The torques that keep the joints from accelerating while a wrench acts on the multirotor and nothing weighs.
 VectorXd holding_nm(const MatrixXd& mass, const VectorXd& wrench) {
     return mass.bottomLeftCorner(mass.rows() - 6, 6) * mass.topLeftCorner<6, 6>().ldlt().solve(wrench);
+}
+
+/// Gains of the disturbance observer over the frequency of the joints: a faster observer holds the same arm with slower
+/// joints. The first that leaves enough to every joint is taken.
+constexpr double observer_shares[] = {0.5, 1, 1.5, 2, 3};
+
+/// The stiffness that is left to hold an arm, over the square of the joints' frequency w, with an observer of c w.
+/// Both make w^2 (1 + 2 c). What integrates takes 2 c / (2 + c) of it at half the gain, and the delay 0.2 c.
+double stiffness_share(double c) {
+    return 1 + 2 * c - 2 * c / (2 + c) - 0.2 * c;
+}
+
+SpaceInversion law_for(const SpaceRobot& robot, const SpaceBandwidths& bandwidths) {
+    SpaceInversion law = gains_for(robot.plant.time_constant_s, bandwidths);
+    if (law.observer_gain_1_s > 0) {
+        law.joint.ki_1_s3 = 0;
+    }
+    return law;
+}
+
+/// The least margin of a joint in the examined poses over 6 dB or 30 deg; infinite without joints, 0 where the robot
+/// cannot hover in one of them.
+double part_of_margins(SpaceRobot robot, const SpaceInversion& law) {
+    constexpr double enough_db = 6, enough_rad = std::numbers::pi / 6;
+    robot.controller.law = law;
+    double part = infinity;
+    if (!space_robot_errors(robot).empty()) {
+        return part;  // which its reader reports
+    }
+    try {
+        for (const ExaminedPose& pose : examined_poses(robot)) {
+            const std::vector<LoopMargins> loops = space_loop_margins(robot, pose.joints_rad).loops;
+            for (std::size_t loop = space_loops::first_joint; loop < loops.size(); ++loop) {
+                part =
+                    std::min({part, loops[loop].gain_margin_db / enough_db, loops[loop].phase_margin_rad / enough_rad});
+            }
+        }
+    } catch (const InputError&) {
+        return 0;
+    }
+    return part;
 }
 
 double lowest(const SpaceLinkLimits& link) {
@@ -150,21 +195,34 @@ SpaceInversion designed_inversion(const SpaceRobot& robot, SpaceBandwidths wante
     if (!wanted.attitude_rad_s) {
         wanted.attitude_rad_s = std::min(share_of_lag / (robot.plant.time_constant_s + late_s), max_attitude_rad_s);
     }
-    // Joints with w and an observer with w / 2 hold an arm with the stiffness 2 w^2. Of that, 0.4 w^2 goes to what
-    // integrates, and 0.1 w^2 is left for the delay: 1.5 w^2 has to be what the arm asks for.
-    constexpr double observer_share = 0.5, stiffness_share = 1.5;
-    if (!wanted.joint_rad_s) {
-        const double asked_rad_s = std::sqrt(greatest_joint_stiffness_asked_1_s2(robot) / stiffness_share);
-        wanted.joint_rad_s = std::min(std::max(SpaceBandwidths::least_joint_rad_s, asked_rad_s), share_of_lag / late_s);
+    const double asked_1_s2 = wanted.joint_rad_s ? 0 : greatest_joint_stiffness_asked_1_s2(robot);
+    const auto with_share = [&](double observer_share) {
+        SpaceBandwidths bandwidths = wanted;
+        if (!wanted.joint_rad_s) {
+            bandwidths.joint_rad_s = std::min(
+                std::max(SpaceBandwidths::least_joint_rad_s, std::sqrt(asked_1_s2 / stiffness_share(observer_share))),
+                share_of_lag / late_s);
+        }
+        if (!wanted.observer_gain_1_s) {
+            bandwidths.observer_gain_1_s =
+                std::max(SpaceBandwidths::least_observer_1_s, observer_share * *bandwidths.joint_rad_s);
+        }
+        return law_for(robot, bandwidths);
+    };
+    SpaceInversion best = with_share(observer_shares[0]);
+    if (wanted.joint_rad_s || wanted.observer_gain_1_s) {
+        return best;
     }
-    if (!wanted.observer_gain_1_s) {
-        wanted.observer_gain_1_s = std::max(SpaceBandwidths::least_observer_1_s, observer_share * *wanted.joint_rad_s);
+    double best_part = part_of_margins(robot, best);
+    for (std::size_t i = 1; i < std::size(observer_shares) && best_part < 1; ++i) {
+        const SpaceInversion law = with_share(observer_shares[i]);
+        const double part = part_of_margins(robot, law);
+        if (part > best_part) {
+            best = law;
+            best_part = part;
+        }
     }
-    SpaceInversion law = gains_for(robot.plant.time_constant_s, wanted);
-    if (law.observer_gain_1_s > 0) {
-        law.joint.ki_1_s3 = 0;
-    }
-    return law;
+    return best;
 }
 
 }  // namespace downwash

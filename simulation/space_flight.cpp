@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/simulation/flight_rules.hpp"
@@ -21,10 +22,6 @@ using simulation::SpaceLoop;
 
 /// Few: among thousands of obstacles a tick takes milliseconds.
 constexpr std::int64_t ticks_between_questions = 8;
-
-double length_of(const Vector3& v) {
-    return std::sqrt(dot(v, v));
-}
 
 double tracking_error_m(const SpaceMotion& motion, const SpacePoint& reference) {
     return simulation::space_tracking_error_m(motion.position_m.data(), reference.position);

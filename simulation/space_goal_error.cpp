@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <variant>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/line_of_sight.hpp"
 #include "downwash/scene/space_motion.hpp"
@@ -14,10 +15,6 @@
 
 namespace downwash {
 namespace {
-
-double length_of(const Vector3& v) {
-    return lane::sqrt(dot(v, v));
-}
 
 /// Modulo a turn, 0 to pi.
 double turn_rad(double a_rad, double b_rad) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "downwash/base/angles.hpp"
+#include "downwash/base/direction.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/simulation/goal.hpp"
@@ -23,10 +24,6 @@ namespace {
 
 /// Angles that miss a tolerance by less are rounding.
 constexpr double rounding_rad = 1e-6;
-
-double length_of(const Vector3& v) {
-    return lane::sqrt(dot(v, v));
-}
 
 std::string degrees(double angle_rad) {
     constexpr double tenths = 10;

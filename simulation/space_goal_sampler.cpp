@@ -8,9 +8,11 @@
 #include <variant>
 #include <vector>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/lane_math.hpp"
-#include "downwash/scene/solid_surface.hpp"
+#include "downwash/simulation/space_aim.hpp"
 #include "downwash/simulation/space_arm_angles.hpp"
+#include "downwash/simulation/space_facets.hpp"
 #include "downwash/simulation/space_goal_error.hpp"
 #include "downwash/simulation/space_tool.hpp"
 #include "downwash/simulation/space_touch_place.hpp"
@@ -21,36 +23,13 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr Vector3 up{0, 0, 1};
 
+using simulation::Aim;
+using simulation::Facet;
+using simulation::Heading;
+using simulation::yawed;
+using simulation::YawRange;
+
 using Quaternion = std::array<double, 4>;
-
-double length_of(const Vector3& v) {
-    return lane::sqrt(dot(v, v));
-}
-
-/// First scaled so that no square over- or underflows.
-Vector3 unit(const Vector3& v) {
-    const Vector3 scaled = (1 / std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])})) * v;
-    return (1 / length_of(scaled)) * scaled;
-}
-
-double sine_of(double angle_rad) {
-    return lane::sin_cos(angle_rad).sine;
-}
-
-/// @param x 0 to 1
-double arc_sine(double x) {
-    return lane::atan2(x, lane::sqrt((1 - x) * (1 + x)));
-}
-
-Vector3 yawed(double yaw_rad, const Vector3& v) {
-    const auto [sine, cosine] = lane::sin_cos(yaw_rad);
-    return {cosine * v[0] - sine * v[1], sine * v[0] + cosine * v[1], v[2]};
-}
-
-/// A vector of length 1 across another one of length 1.
-Vector3 across(const Vector3& v) {
-    return unit(cross(v, std::abs(v[0]) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0}));
-}
 
 /// From one direction toward another one by an angle; at most as far as that.
 Vector3 toward(const Vector3& from, const Vector3& to, double angle_rad) {
@@ -75,73 +54,6 @@ Vector3 in_ball(Random& random, double radius, const std::array<bool, 3>& counts
         }
     }
 }
-
-/// What a goal asks of the arm of a level robot: a vector of its hand within a cone of the world; of a full pose the
-/// attitude too.
-struct Aim {
-    Vector3 of_hand, to;
-    double cone_rad;
-    const Quaternion* attitude = nullptr;
-
-    [[nodiscard]] AngleRange elevation() const {
-        const double middle = lane::atan2(to[2], lane::sqrt(to[0] * to[0] + to[1] * to[1]));
-        return {std::max(middle - cone_rad, -pi / 2), std::min(middle + cone_rad, pi / 2)};
-    }
-};
-
-/// Yaws from `middle_rad` - `half_rad` to `middle_rad` + `half_rad`; at half a turn all.
-struct YawRange {
-    double middle_rad, half_rad;
-};
-
-/// The yaws at which an arm aims. @pre the elevation of the arm is within that of the aim
-YawRange yaws_of(const Aim& aim, const SpaceArmAngles& arm, const JointAngles& at) {
-    const Vector3 v = arm.outward(at, aim.of_hand);
-    const double v_level = lane::sqrt(v[0] * v[0] + v[1] * v[1]);
-    const double cone = sine_of(0.5 * std::min(aim.cone_rad, pi));
-    if (aim.attitude != nullptr) {
-        // The turn to the attitude is a swing s of the vertical and a twist t about it:
-        // cos(turn / 2) = cos(s / 2) cos(t / 2).
-        const Vector3 x = arm.outward(at, {1, 0, 0}), y = arm.outward(at, {0, 1, 0});
-        const Matrix3 wanted = rotation_of(*aim.attitude);
-        // Rz(yaw) A is next to R where the trace of (Rz A)^T R is greatest.
-        const Vector3 z = cross(x, y);
-        double along = 0, beside = 0;
-        const Vector3 columns[] = {x, y, z};
-        for (std::size_t i = 0; i < 3; ++i) {
-            along += columns[i][0] * wanted[0][i] + columns[i][1] * wanted[1][i];
-            beside += columns[i][0] * wanted[1][i] - columns[i][1] * wanted[0][i];
-        }
-        const double swing = sine_of(0.5 * lane::atan2(v_level, v[2]));
-        const double room = (cone - swing) * (cone + swing), left = 1 - swing * swing;
-        const double half = room >= left ? 1 : std::max(0.0, room / left);
-        return {lane::atan2(beside, along), 2 * arc_sine(lane::sqrt(half))};
-    }
-    const double to_level = lane::sqrt(aim.to[0] * aim.to[0] + aim.to[1] * aim.to[1]) / length_of(aim.to);
-    const double apart =
-        sine_of(0.5 * (lane::atan2(v[2], v_level) - lane::atan2(aim.to[2], to_level * length_of(aim.to))));
-    const double room = (cone - apart) * (cone + apart), level = v_level * to_level;
-    constexpr double upright = 1e-24;
-    if (level <= upright || room >= level) {
-        return {lane::atan2(aim.to[1], aim.to[0]) - lane::atan2(v[1], v[0]), pi};
-    }
-    return {lane::atan2(aim.to[1], aim.to[0]) - lane::atan2(v[1], v[0]),
-            2 * arc_sine(lane::sqrt(std::max(0.0, room / level)))};
-}
-
-/// The arm and yaw of a configuration.
-struct Heading {
-    JointAngles joints{};
-    double yaw_rad = 0;
-};
-
-/// Part of the surface of an obstacle, seen from the side that n points to.
-struct Facet {
-    Vector3 corner_m, first_m, second_m;  ///< a corner, and the way from it to both others
-    Vector3 n;
-    double area_until_m2;  ///< of this one and all before
-    bool has_two_sides;
-};
 
 }  // namespace
 
@@ -193,12 +105,7 @@ struct SpaceGoalSampler::Impl {
     }
 
     [[nodiscard]] std::optional<Heading> drawn_at(const Aim& aim, Random& random) const {
-        const std::optional<JointAngles> joints = arm.drawn_with(aim.of_hand, aim.elevation(), random);
-        if (!joints) {
-            return std::nullopt;
-        }
-        const YawRange yaws = yaws_of(aim, arm, *joints);
-        return Heading{*joints, lane::wrap_angle(yaws.middle_rad + random.uniform(-yaws.half_rad, yaws.half_rad))};
+        return simulation::drawn_heading(aim, arm, random);
     }
 
     [[nodiscard]] Found drawn(const SpaceEndEffectorGoal& goal, const One&, double share, Random& random) const {
@@ -360,47 +267,10 @@ struct SpaceGoalSampler::Impl {
 
     // The nearest.
 
-    /// Some ways to turn the arm so that it aims, from what it is.
-    [[nodiscard]] std::vector<JointAngles> aimed(const Aim& aim, const JointAngles& from) const {
-        std::vector<JointAngles> found;
-        const auto add = [&found](const std::optional<JointAngles>& one) {
-            if (one) {
-                found.push_back(*one);
-            }
-        };
-        const AngleRange elevation = aim.elevation();
-        const double now_rad = arm.elevation_rad(from, aim.of_hand);
-        const double wanted_rad = std::clamp(now_rad, elevation.low_rad, elevation.high_rad);
-        if (now_rad == wanted_rad) {
-            found.push_back(from);
-        }
-        for (std::size_t i = 0; i < arm.joints(); ++i) {
-            add(arm.turned(from, i, aim.of_hand, elevation));
-            add(arm.turned_in_turn(from, i, aim.of_hand, elevation));
-        }
-        const auto [sine, cosine] = lane::sin_cos(wanted_rad);
-        const Vector3 up_now = arm.inward(from, up);
-        const Vector3 beside = up_now - dot(up_now, aim.of_hand) * aim.of_hand;
-        const Vector3 way = length_of(beside) > 0 ? unit(beside) : across(aim.of_hand);
-        const Vector3 up_then = sine * aim.of_hand + cosine * way;
-        for (std::size_t outer = 1; outer < arm.joints(); ++outer) {
-            for (std::size_t inner = 0; inner < outer; ++inner) {
-                add(arm.turned(from, inner, outer, up_then));
-            }
-        }
-        return found;
-    }
-
-    /// The yaw within a range that is nearest to another one.
-    [[nodiscard]] static double nearest_yaw(const YawRange& yaws, double to_rad) {
-        const double off_rad = lane::wrap_angle(to_rad - yaws.middle_rad);
-        return to_rad + std::clamp(off_rad, -yaws.half_rad, yaws.half_rad) - off_rad;
-    }
-
     template <class Visit>
     void for_each_heading(const Aim& aim, const Heading& start, const Visit& visit) const {
-        for (const JointAngles& joints : aimed(aim, start.joints)) {
-            visit(Heading{joints, nearest_yaw(yaws_of(aim, arm, joints), start.yaw_rad)});
+        for (const Heading& heading : simulation::headings_near(aim, arm, start)) {
+            visit(heading);
         }
     }
 
@@ -506,7 +376,7 @@ struct SpaceGoalSampler::Impl {
         }
         const double room_rad = share * goal.tolerance_rad;
         if (goal.yaw_rad) {
-            at[space::yaw] = nearest_yaw({*goal.yaw_rad, room_rad}, from[space::yaw]);
+            at[space::yaw] = YawRange{*goal.yaw_rad, room_rad}.nearest_to(from[space::yaw]);
         }
         const JointAngles joints = within_limits(heading_of(from).joints);
         for (std::size_t i = 0; i < arm.joints(); ++i) {
@@ -514,7 +384,8 @@ struct SpaceGoalSampler::Impl {
             at[space::first_joint + i] =
                 goal.joints_rad.empty()
                     ? now_rad
-                    : in_range(i, nearest_yaw({in_range(i, goal.joints_rad[i], now_rad), room_rad}, now_rad), now_rad);
+                    : in_range(i, YawRange{in_range(i, goal.joints_rad[i], now_rad), room_rad}.nearest_to(now_rad),
+                               now_rad);
         }
         if (const Found found = meets(goal, at, share)) {
             visit(*found);
@@ -548,41 +419,6 @@ struct SpaceGoalSampler::Impl {
     }
 };
 
-namespace {
-
-/// What of an obstacle's surface a contact may touch.
-std::vector<Facet> facets_of(const SpaceContactGoal& goal, const std::vector<Obstacle>& obstacles) {
-    std::vector<Facet> facets;
-    double area_m2 = 0;
-    for (const Obstacle& obstacle : obstacles) {
-        const TriangleMesh surface = surface_of(obstacle);
-        for (const auto& corners : surface.triangles) {
-            const Vector3& a = surface.vertices_m[corners[0]];
-            const Vector3 first = surface.vertices_m[corners[1]] - a, second = surface.vertices_m[corners[2]] - a;
-            const Vector3 normal = cross(first, second);
-            const double twice_m2 = length_of(normal);
-            if (!(twice_m2 > 0)) {
-                continue;
-            }
-            const bool has_two_sides = std::holds_alternative<Mesh>(obstacle.shape);
-            const Vector3 n = (1 / twice_m2) * normal;
-            // The multirotor touches from below.
-            const double down = has_two_sides ? std::abs(n[2]) : -n[2];
-            if (goal.part == TouchingPart::frame && down < lane::sin_cos(touch_angle_rad).cosine) {
-                continue;
-            }
-            if (goal.position_m && std::abs(dot(*goal.position_m - a, n)) > goal.tolerance_m) {
-                continue;
-            }
-            area_m2 += 0.5 * twice_m2;
-            facets.push_back({a, first, second, n, area_m2, has_two_sides});
-        }
-    }
-    return facets;
-}
-
-}  // namespace
-
 SpaceGoalSampler::SpaceGoalSampler(const SpaceRobot& robot, const SpaceBounds& bounds,
                                    std::shared_ptr<const Scene> scene, SpaceChecker checker, double margin_m,
                                    const SpaceGoal& goal) {
@@ -604,7 +440,7 @@ SpaceGoalSampler::SpaceGoalSampler(const SpaceRobot& robot, const SpaceBounds& b
                     named.push_back(obstacle);
                 }
             }
-            one.facets = facets_of(*contact, named);
+            one.facets = simulation::facets_of(*contact, named);
             one.touched = std::make_shared<const Scene>(std::move(named));
         }
     }

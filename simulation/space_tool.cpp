@@ -4,18 +4,13 @@
 #include <cmath>
 #include <cstddef>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/lane_math.hpp"
 
 namespace downwash {
 namespace {
 
 using Quaternion = std::array<double, 4>;
-
-/// First scaled so that no square over- or underflows.
-Vector3 unit(const Vector3& v) {
-    const Vector3 scaled = (1 / std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])})) * v;
-    return (1 / lane::sqrt(dot(scaled, scaled))) * scaled;
-}
 
 /// First `b`, then `a`.
 Quaternion product(const Quaternion& a, const Quaternion& b) {
@@ -59,8 +54,7 @@ std::array<double, 4> attitude_of(const Vector3& rpy_rad) noexcept {
 
 double angle_between_rad(const Vector3& a, const Vector3& b) noexcept {
     const Vector3 u = unit(a), v = unit(b);
-    const Vector3 across = cross(u, v);
-    return lane::atan2(lane::sqrt(dot(across, across)), dot(u, v));
+    return lane::atan2(length_of(cross(u, v)), dot(u, v));
 }
 
 }  // namespace downwash

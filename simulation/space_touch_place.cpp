@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "downwash/base/angles.hpp"
+#include "downwash/base/direction.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/dynamics/ceiling_contact.hpp"
@@ -21,10 +22,6 @@ namespace {
 constexpr double nothing_m = std::numeric_limits<double>::infinity();
 /// Distances around a point, from a flat surface, may differ so much [m].
 constexpr double flatness_m = 1e-3;
-
-double length_of(const Vector3& v) {
-    return lane::sqrt(dot(v, v));
-}
 
 double distance_m(const Scene& obstacle, const Vector3& at_m) {
     constexpr double dot_m = 1e-7;
@@ -134,10 +131,7 @@ Vector3 slope_at(const Scene& obstacle, const Vector3& at_m, double step_m) {
 /// @param points that touch, from their middle, in the world
 bool is_flat(const Scene& obstacle, const Vector3& at_m, const Vector3& normal, double away_m, double around_m,
              const std::vector<Vector3>& points) {
-    const Vector3 some = std::abs(normal[0]) < 0.6 ? Vector3{1, 0, 0} : Vector3{0, 1, 0};
-    Vector3 u = cross(normal, some);
-    u = (1 / length_of(u)) * u;
-    const Vector3 v = cross(normal, u);
+    const Vector3 u = across(normal), v = cross(normal, u);
     constexpr double nearest_m = 0.01;
     const double near_m = std::min(away_m, nearest_m);
     const Vector3 foot_m = at_m - (away_m - near_m) * normal;

@@ -127,7 +127,8 @@ void add_margins(Command program, Action& action) {
                   "the joints; default: 4.7 or, of a model inversion in space, more if the arm's weight asks for it");
     command
         .add_option("--observer-1-s L", bandwidths.observer_gain_1_s,
-                    "gain of the disturbance observer; 0: none; default: 3 or, in space, half of the joints' frequency")
+                    "gain of the disturbance observer; 0: none; default: 3 or, in space, from half of the joints' "
+                    "frequency, more if their margins ask for it")
         .in_range(0.0, 1000.0);
     add_json(command, given.as_json);
 }

@@ -15,6 +15,7 @@
 #include "downwash/simulation/direct_field.hpp"
 #include "downwash/simulation/flight_loop.hpp"
 #include "downwash/simulation/noise.hpp"
+#include "downwash/simulation/plane_in_space.hpp"
 #include "downwash/simulation/pose.hpp"
 #include "downwash/simulation/space_effect.hpp"
 #include "downwash/simulation/space_loop_of.hpp"
@@ -23,52 +24,6 @@ namespace downwash::bench {
 namespace {
 
 using simulation::SpaceFlightState;
-
-/// A vector of the plane, without its origin.
-Vector3 turned(const PlaneOfMotion& plane, double x, double z) {
-    return {x * plane.cos_heading(), x * plane.sin_heading(), z};
-}
-
-SpaceWorld lifted(const World& world, const PlaneOfMotion& plane) {
-    SpaceWorld space;
-    space.ceiling_scale = world.ceiling_scale;
-    space.ground_scale = world.ground_scale;
-    space.scene_m = turned(plane, world.scene_x_m, world.scene_z_m);
-    space.mass_scale = world.mass_scale;
-    space.inertia_scale = world.inertia_scale;
-    space.link_mass_scale[0] = world.arm_mass_scale;
-    space.center_of_mass_m = {world.center_of_mass_x_m, 0, world.center_of_mass_z_m};
-    space.thrust_scale = world.thrust_scale;
-    std::copy_n(world.rotor_thrust_scale, max_rotors, space.rotor_thrust_scale);
-    space.wash_scale = world.arm_wash_scale;
-    space.rotor_time_constant_s = world.rotor_time_constant_s;
-    space.delay_s = world.delay_s;
-    space.position_bias_m = turned(plane, world.position_bias_x_m, world.position_bias_z_m);
-    space.attitude_bias_rad = {0, world.pitch_bias_rad, 0};
-    space.wind_m_s = turned(plane, world.wind_x_m_s, world.wind_z_m_s);
-    space.position_noise_m = world.position_noise_m;
-    space.velocity_noise_m_s = world.velocity_noise_m_s;
-    space.gyro_noise_rad_s = world.gyro_noise_rad_s;
-    space.gust_m_s = world.gust_m_s;
-    space.gust_length_level_m = world.gust_length_x_m;
-    space.gust_length_up_m = world.gust_length_z_m;
-    return space;
-}
-
-SpacePoint lifted(const ReferencePoint& point, const PlaneOfMotion& plane) {
-    SpacePoint space;
-    const auto set = [&](const Vector3& place, double joint, double(&axes)[space_axes<max_joints>]) {
-        std::copy_n(place.begin(), 3, axes);
-        axes[space::first_joint] = joint;
-    };
-    set(plane.to_world(point.position[plane::x], 0, point.position[plane::z]), point.position[plane::arm],
-        space.position);
-    set(turned(plane, point.velocity[plane::x], point.velocity[plane::z]), point.velocity[plane::arm], space.velocity);
-    set(turned(plane, point.acceleration[plane::x], point.acceleration[plane::z]), point.acceleration[plane::arm],
-        space.acceleration);
-    space.position[space::yaw] = plane.heading_rad();
-    return space;
-}
 
 /// Yaw by the heading of the plane, then pitch.
 std::array<double, 4> lifted_attitude(double pitch_rad, const PlaneOfMotion& plane) {
@@ -93,7 +48,8 @@ double way_of_gusts(const World& world) {
 /// The noise of the plane for a tick in space.
 void lift_noise(const double* planar, const World& world, const PlaneOfMotion& plane, double* space) {
     std::fill_n(space, simulation::drawn_space_noise_count, 0.0);
-    const Vector3 place = turned(plane, planar[0], planar[1]), velocity = turned(plane, planar[2], planar[3]);
+    const Vector3 place = vector_in_space(planar[0], planar[1], plane),
+                  velocity = vector_in_space(planar[2], planar[3], plane);
     std::copy_n(place.begin(), 3, space);
     std::copy_n(velocity.begin(), 3, space + 3);
     space[7] = planar[4];
@@ -112,7 +68,7 @@ class LiftedLoop {
           plane_(plane),
           model_(simulation::make_space_tick_model<1>(robot, simulation::space_aero(aero, robot.rotor_radius_m))),
           law_(std::get<SpaceInversion>(model_.law)),
-          flown_(make_space_world<1>(robot, lifted(world, plane))),
+          flown_(make_space_world<1>(robot, in_space(world, plane))),
           plant_(plant_in(model_, flown_.numbers)),
           step_{dynamics::joint_steps(model_.nominal.plant, model_.tick_s)},
           effect_(effect) {
@@ -133,7 +89,7 @@ class LiftedLoop {
         lift_noise(planar_noise, world_, plane_, noise);
         simulation::SpaceActuation<double, 1> given{};
         simulation::tick_in_world(model_, law_, flown_.numbers, plant_, noise, state_,
-                                  simulation::point_for<1>(lifted(reference, plane_)), effect_, given, next_, step_);
+                                  simulation::point_for<1>(in_space(reference, plane_)), effect_, given, next_, step_);
         std::swap(state_, next_);
         return given.saturation;
     }

@@ -92,7 +92,7 @@ TEST_CASE(
     "designed gains leave 6 dB and 30 deg to every loop of the shipped robots in space, wherever their arms are") {
     const std::filesystem::path robots(DOWNWASH_PROBLEMS "/robots");
     Random random(7);
-    for (const char* name : {"hexa370_arm3", "snu_f550_arm2", "ars_lrm_space"}) {
+    for (const char* name : {"hexa370_arm3", "hexa960_arm2", "snu_f550_arm2", "ars_lrm_space"}) {
         CAPTURE(name);
         const auto file = robots / (std::string(name) + ".yaml");
         const auto robot = std::get<SpaceRobot>(read_robot_for_design(file, {}, std::string(SpaceInversion::name)));

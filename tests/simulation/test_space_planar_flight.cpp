@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "../controllers/planar_twin.hpp"
 #include "../support/random.hpp"
 #include "../support/test_problem.hpp"
 #include "downwash/controllers/configuration.hpp"
@@ -15,6 +14,7 @@
 #include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight_loop.hpp"
+#include "downwash/simulation/plane_in_space.hpp"
 #include "downwash/simulation/pose.hpp"
 #include "downwash/simulation/space_flight.hpp"
 #include "downwash/simulation/space_loop.hpp"
@@ -26,27 +26,6 @@ using namespace downwash;
 using namespace downwash::test;
 
 namespace {
-
-/// The same world in space.
-SpaceWorld in_space(const World& world) {
-    SpaceWorld space;
-    space.ceiling_scale = world.ceiling_scale;
-    space.ground_scale = world.ground_scale;
-    space.scene_m = {world.scene_x_m, 0, world.scene_z_m};
-    space.mass_scale = world.mass_scale;
-    space.inertia_scale = world.inertia_scale;
-    space.link_mass_scale[0] = world.arm_mass_scale;
-    space.center_of_mass_m = {world.center_of_mass_x_m, 0, world.center_of_mass_z_m};
-    space.thrust_scale = world.thrust_scale;
-    std::copy_n(world.rotor_thrust_scale, max_rotors, space.rotor_thrust_scale);
-    space.wash_scale = world.arm_wash_scale;
-    space.rotor_time_constant_s = world.rotor_time_constant_s;
-    space.delay_s = world.delay_s;
-    space.position_bias_m = {world.position_bias_x_m, 0, world.position_bias_z_m};
-    space.attitude_bias_rad = {0, world.pitch_bias_rad, 0};
-    space.wind_m_s = {world.wind_x_m_s, 0, world.wind_z_m_s};
-    return space;
-}
 
 /// K near a surface below and another one above, both of which end.
 SidedFactor<double> factor_at(double x_m, double z_m) {
@@ -108,18 +87,12 @@ std::vector<ReferenceKnot> planar_knots(double rate_hz) {
             {20 * second, at_rest({-0.8, 1.6, 2.5})}};
 }
 
-SpacePlan in_space(const std::vector<ReferenceKnot>& knots, double tick_s) {
+SpacePlan plan_in_space(const std::vector<ReferenceKnot>& knots, double tick_s) {
     SpacePlan plan;
     plan.tick_s = tick_s;
     plan.joints = 1;
     for (const ReferenceKnot& knot : knots) {
-        SpaceKnot lifted_knot;
-        lifted_knot.tick = knot.tick;
-        const auto point = lifted(knot.point);
-        std::copy_n(point.position, space_axes<1>, lifted_knot.point.position);
-        std::copy_n(point.velocity, space_axes<1>, lifted_knot.point.velocity);
-        std::copy_n(point.acceleration, space_axes<1>, lifted_knot.point.acceleration);
-        plan.reference.push_back(lifted_knot);
+        plan.reference.push_back({knot.tick, in_space(knot.point, {})});
     }
     return plan;
 }
@@ -145,10 +118,10 @@ Difference difference_of(const Robot& robot, const World& world, bool has_surfac
     simulation::SpaceEffect& effect =
         has_surfaces ? static_cast<simulation::SpaceEffect&>(surfaces_in_space) : no_surfaces_in_space;
     const SpaceRobot twin = twin_of(robot);
-    const auto space = simulation::make_space_loop({twin, in_space(world), effect, {tilt_loss}, false});
+    const auto space = simulation::make_space_loop({twin, in_space(world, {}), effect, {tilt_loss}, false});
 
     const std::vector<ReferenceKnot> knots = planar_knots(robot.controller.rate_hz);
-    const SpacePlan plan = in_space(knots, model.tick_s);
+    const SpacePlan plan = plan_in_space(knots, model.tick_s);
     FlightState state{};
     state.plant.q[1] = 1.5;
     state.plant.q[3] = 1.2;
@@ -271,7 +244,7 @@ TEST_CASE("The end of an arm presses on a wall in space as in the plane") {
     settings.checker = &checker;
     SpaceMotion start;
     start.position_m = {at[plane::x], 0, at[plane::z]};
-    const SpaceFlight flight = fly(twin, in_space(knots, model->tick().tick_s), start, settings);
+    const SpaceFlight flight = fly(twin, plan_in_space(knots, model->tick().tick_s), start, settings);
 
     CHECK(planar.outcome == Outcome::ok);
     CHECK(flight.outcome == Outcome::ok);

@@ -11,7 +11,7 @@
 
 namespace downwash::test {
 
-/// A hexarotor of 2.3 kg with tilted rotors and an arm of 0 to 3 joints below it, all about different axes.
+/// A hexarotor of 2.3 kg with tilted rotors and an arm of 0 to 6 joints below it, about different axes.
 inline SpaceRobot space_robot(int joints) {
     SpaceRobot robot;
     robot.name = "space-robot";
@@ -31,7 +31,7 @@ inline SpaceRobot space_robot(int joints) {
     plant.time_constant_s = 0.03;
     plant.power_coefficient_w_n1p5 = 6;
     plant.drag = {0.3, 0.02};
-    const Vector3 axes[] = {{0, 1, 0}, {1, 0, 0}, {0, 1, 0.2}};
+    const Vector3 axes[] = {{0, 1, 0}, {1, 0, 0}, {0, 1, 0.2}, {1, 0.3, 0}, {0, 1, 0}, {0.1, 0, 1}};
     for (int i = 0; i < joints; ++i) {
         const double size = i < 2 ? 1 : 0.6;
         SpaceLink link;
