@@ -55,8 +55,9 @@ const SpaceProblem& SpacePlanJudge::problem() const noexcept {
 SpaceJudgedFlight SpacePlanJudge::fly(const SpacePlan& plan, bool aero, const std::optional<SpaceWorld>& world) const {
     SpaceFlightConditions conditions;
     conditions.start = motion_of(problem().start);
-    conditions.goals = problem().goals;
-    conditions.in_any_order = problem().in_any_order;
+    conditions.goals = goals_of(problem());
+    conditions.in_any_order = leaves_order_open(problem());
+    conditions.energy_budget_j = problem().energy_budget_j;
     conditions.aero = aero;
     conditions.world = world;
     return shared_->judge.fly(plan, conditions);

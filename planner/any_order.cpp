@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "downwash/planner/direct_flight.hpp"
+#include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goals_in_order.hpp"
 #include "downwash/planner/leg_table.hpp"
 #include "downwash/planner/order_comparison.hpp"
@@ -16,8 +17,17 @@
 namespace downwash::planning {
 namespace {
 
+template <class Family>
 class AnyOrder {
  public:
+    using Problem = typename Family::Problem;
+    using Goal = typename Family::Goal;
+    using PlannerModel = PlannerModelOf<Family>;
+    using SolveOptions = SolveOptionsOf<Family>;
+    using FoundPlan = FoundPlanOf<Family>;
+    using Found = FoundOf<Family>;
+    using SearchResult = SearchResultOf<Family>;
+
     AnyOrder(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
         : problem_(problem),
           model_(model),
@@ -57,7 +67,9 @@ class AnyOrder {
     void compare_orders(const SearchBudget& budget);
     void tell_of_legs();
     [[nodiscard]] VisitOrder described(const PlaceOrder& order) const;
-    [[nodiscard]] double cost_when_flown(const Found& way) const { return cost_of(way, problem_.planner.objective); }
+    [[nodiscard]] double cost_when_flown(const Found& way) const {
+        return planning::cost_when_flown(way, problem_.planner.objective);
+    }
     [[nodiscard]] bool attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only);
     [[nodiscard]] SolveOptions options_of_attempt(bool is_first_only, const PlaceOrder& order);
     void learn_from_failure(const PlaceOrder& order, const SearchResult& result);
@@ -66,16 +78,15 @@ class AnyOrder {
     void keep_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
                         std::uint64_t iterations_before);
     void explain();
-    [[nodiscard]] double energy_with(std::size_t target) const;
     void spend(std::uint64_t iterations_before);
 
     const Problem& problem_;
     const PlannerModel& model_;
     const SolveOptions& options_;
     SolveOptions silent_;  ///< for searches of which the caller hears nothing
-    LegTable table_;
+    LegTableOf<Family> table_;
     SearchBudget left_;
-    OrderComparison comparison_;
+    OrderComparisonOf<Family> comparison_;
     Stopwatch clock_;
     double spent_at_s_ = 0;                                  ///< when time was last taken from what is left
     double told_at_s_ = 0;                                   ///< when the caller was last told of legs
@@ -89,7 +100,8 @@ class AnyOrder {
 };
 
 /// Takes what has passed since it was called last from what is left.
-void AnyOrder::spend(std::uint64_t iterations_before) {
+template <class Family>
+void AnyOrder<Family>::spend(std::uint64_t iterations_before) {
     SearchRecord work;
     const double now_s = clock_.seconds();
     work.wall_s = now_s - std::exchange(spent_at_s_, now_s);
@@ -102,7 +114,8 @@ constexpr double share_of_more_legs = 0.2;
 /// First a flight through all in the order that looks best, where only time is limited with all of it: a list in that
 /// order would have no more. Then orders are compared; then a flight in the best of them or, where there is none, in
 /// the next one.
-void AnyOrder::search() {
+template <class Family>
+void AnyOrder<Family>::search() {
     constexpr double share_of_first = 0.15, share_of_legs = 0.35, share_before_a_way = 0.15;
     const PlaceOrder likely = comparison_.likely();
     is_thrifty_ = is_limited() && !(is_timed() && has_energy_to_spare(likely));
@@ -151,7 +164,8 @@ void AnyOrder::search() {
 
 /// Where time alone is limited and legs were searched for in vain: searches for them again, for longer. @return whether
 /// there were any
-bool AnyOrder::finds_more_places() {
+template <class Family>
+bool AnyOrder<Family>::finds_more_places() {
     if (!is_timed() || !table_.search_on()) {
         return false;
     }
@@ -161,19 +175,22 @@ bool AnyOrder::finds_more_places() {
 
 /// Whether first plans of its legs are likely to take no more than the budget: they may be twice as dear as lower
 /// bounds.
-bool AnyOrder::has_energy_to_spare(const PlaceOrder& order) const {
+template <class Family>
+bool AnyOrder<Family>::has_energy_to_spare(const PlaceOrder& order) const {
     constexpr double factor = 2;
     return factor * order.energy_j <= comparison_.energy_limit_j;
 }
 
 /// What a search for a first flight in another order may take. Without any flight and with time alone, it may take all:
 /// it ends by itself where it comes no farther (effort()).
-SearchBudget AnyOrder::budget_of_try() const {
+template <class Family>
+SearchBudget AnyOrder<Family>::budget_of_try() const {
     constexpr double share = 0.35;
     return is_timed() && !has_way() ? left_ : share_of_left(share);
 }
 
-SequenceEffort AnyOrder::effort() const {
+template <class Family>
+SequenceEffort AnyOrder<Family>::effort() const {
     constexpr double patience = 0.25, patience_with_energy = 0.1;  // there, fewer targets may be the answer
     constexpr double min_round = 0.22;                             // two rounds then, of 22 and 78 %
     SequenceEffort effort;
@@ -189,12 +206,14 @@ SequenceEffort AnyOrder::effort() const {
 }
 
 /// A share of what is left of the limits, at least a tenth of all.
-SearchBudget AnyOrder::share_of_left(double share) const {
+template <class Family>
+SearchBudget AnyOrder<Family>::share_of_left(double share) const {
     constexpr double least = 0.1;
     return left_.part(share).at_least(SearchBudget(problem_.planner).part(least)).at_most(left_);
 }
 
-SearchResult AnyOrder::run() {
+template <class Family>
+auto AnyOrder<Family>::run() -> SearchResult {
     try {
         search();
     } catch (const WorkStopped&) {  // there is what was found before
@@ -205,22 +224,25 @@ SearchResult AnyOrder::run() {
 }
 
 /// Whether a whole flight took less than its legs: then there may be energy for another target.
-bool AnyOrder::leaves_energy(const PlaceOrder& order) {
-    if (!is_limited() || order.places.size() == problem_.targets.size() || !best_.execution) {
+template <class Family>
+bool AnyOrder<Family>::leaves_energy(const PlaceOrder& order) {
+    if (!is_limited() || order.places.size() == targets_of(problem_).size() || !best_.execution) {
         return false;
     }
     comparison_.energy_limit_j = *problem_.energy_budget_j * std::max(1.0, order.energy_j / best_.execution->energy_j);
     return true;
 }
 
-void AnyOrder::compare_orders(const SearchBudget& budget) {
+template <class Family>
+void AnyOrder<Family>::compare_orders(const SearchBudget& budget) {
     const std::uint64_t iterations = record_.iterations;
     add_work(record_, comparison_.compare(budget));
     spend(iterations);
 }
 
 /// Tells the caller that orders are compared, ten times a second.
-void AnyOrder::tell_of_legs() {
+template <class Family>
+void AnyOrder<Family>::tell_of_legs() {
     constexpr double period_s = 0.1;
     const double now_s = clock_.seconds();
     if (!options_.on_progress || now_s < told_at_s_ + period_s) {
@@ -235,12 +257,13 @@ void AnyOrder::tell_of_legs() {
         progress.rejected += count;
     }
     progress.best_cost = has_way() ? std::optional(best_.cost) : std::nullopt;
-    progress.goals = problem_.targets.size() + (problem_.return_to ? 1 : 0);
+    progress.goals = targets_of(problem_).size() + (problem_.return_to ? 1 : 0);
     progress.legs = table_.legs_flown();
     options_.on_progress(progress);
 }
 
-VisitOrder AnyOrder::described(const PlaceOrder& order) const {
+template <class Family>
+VisitOrder AnyOrder<Family>::described(const PlaceOrder& order) const {
     VisitOrder described;
     for (const std::size_t place : order.places) {
         described.visits.push_back(table_.visit_at(place));
@@ -253,7 +276,8 @@ VisitOrder AnyOrder::described(const PlaceOrder& order) const {
 }
 
 /// Searches for a flight in an order. @return whether there is one
-bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only) {
+template <class Family>
+bool AnyOrder<Family>::attempt(const PlaceOrder& order, const SearchBudget& budget, bool is_first_only) {
     Problem part = in_order(problem_, described(order));
     budget.limit(part.planner);
     const double begun_at_s = clock_.seconds();
@@ -282,7 +306,8 @@ bool AnyOrder::attempt(const PlaceOrder& order, const SearchBudget& budget, bool
     return is_found;
 }
 
-SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& order) {
+template <class Family>
+auto AnyOrder<Family>::options_of_attempt(bool is_first_only, const PlaceOrder& order) -> SolveOptions {
     SolveOptions inner = options_;
     inner.known_plan.reset();
     inner.known_places.clear();
@@ -318,7 +343,8 @@ SolveOptions AnyOrder::options_of_attempt(bool is_first_only, const PlaceOrder& 
 
 /// What does not fly as a whole is not to be chosen again: at once where it takes too much energy, else when it fails
 /// for the second time. Without any flight and with time alone, one that ended with the time says nothing.
-void AnyOrder::learn_from_failure(const PlaceOrder& order, const SearchResult& result) {
+template <class Family>
+void AnyOrder<Family>::learn_from_failure(const PlaceOrder& order, const SearchResult& result) {
     const Found& failed = result.found;
     if (options_.stop.stop_requested()) {
         return;
@@ -352,19 +378,22 @@ void AnyOrder::learn_from_failure(const PlaceOrder& order, const SearchResult& r
 }
 
 /// The place of a goal of an order by its number from 1; outside() where it returns and, for 0, where it starts.
-std::size_t AnyOrder::place_of(const PlaceOrder& order, std::size_t goal) const {
+template <class Family>
+std::size_t AnyOrder<Family>::place_of(const PlaceOrder& order, std::size_t goal) const {
     return goal > 0 && goal <= order.places.size() ? order.places[goal - 1] : table_.estimates().outside();
 }
 
 /// @param goal to which it leads, from 1
-void AnyOrder::give_up_leg(const PlaceOrder& order, std::size_t goal) {
+template <class Family>
+void AnyOrder<Family>::give_up_leg(const PlaceOrder& order, std::size_t goal) {
     table_.give_up(place_of(order, goal - 1), place_of(order, goal));
 }
 
 /// Takes a flight as the solution if it visits more than the present one, or as many for less; where there is none yet,
 /// a part of one that comes farther.
-void AnyOrder::keep_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
-                              std::uint64_t iterations_before) {
+template <class Family>
+void AnyOrder<Family>::keep_if_better(const PlaceOrder& order, SearchResult result, double begun_at_s,
+                                      std::uint64_t iterations_before) {
     Found& found = result.found;
     const bool is_solved = found.status == Status::solved;
     const bool visits_more = order.places.size() > best_order_.places.size();
@@ -391,20 +420,21 @@ void AnyOrder::keep_if_better(const PlaceOrder& order, SearchResult result, doub
 }
 
 /// Which targets are left out, and why. Where no flight to one was found, the solution is approximate.
-void AnyOrder::explain() {
+template <class Family>
+void AnyOrder<Family>::explain() {
     PlaceOrder order = best_order_;
     if (has_way() && !best_order_.is_best) {
         const PlaceOrder known = comparison_.chosen();
         order.is_best = known.is_best && known.places == best_order_.places;
     }
     VisitOrder described = this->described(order);
-    for (std::size_t target = 0; target < problem_.targets.size(); ++target) {
+    for (std::size_t target = 0; target < targets_of(problem_).size(); ++target) {
         const auto is_it = [target](const Visit& visit) { return visit.target == target; };
         if (std::ranges::any_of(described.visits, is_it)) {
             continue;
         }
         LeftOutTarget left_out{target, LeftOutReason::no_flight, std::nullopt};
-        const double energy_j = energy_with(target);
+        const double energy_j = energy_with(table_.estimates(), best_order_.places, target);
         if (is_limited() && std::isfinite(energy_j) && !table_.is_out_of_reach(target)) {
             left_out = {target, LeftOutReason::energy_budget, energy_j};
         } else if (has_way()) {
@@ -415,38 +445,15 @@ void AnyOrder::explain() {
     best_.order = std::move(described);
 }
 
-/// What a target more would take, in the cheapest order with it [J].
-double AnyOrder::energy_with(std::size_t target) const {
-    std::vector<std::size_t> places;
-    std::vector<std::size_t> target_of;
-    std::vector<std::size_t> numbers(problem_.targets.size(), problem_.targets.size());
-    const LegCosts& all = table_.estimates();
-    std::size_t count = 0;
-    for (std::size_t place = 0; place < all.places(); ++place) {
-        const std::size_t of = all.target_of(place);
-        const bool is_wanted = of == target || std::ranges::find(best_order_.places, place) != best_order_.places.end();
-        if (is_wanted) {
-            numbers[of] = numbers[of] == problem_.targets.size() ? count++ : numbers[of];
-            places.push_back(place);
-            target_of.push_back(numbers[of]);
-        }
-    }
-    LegCosts energies(std::move(target_of));
-    places.push_back(all.outside());
-    for (std::size_t from = 0; from < places.size(); ++from) {
-        for (std::size_t to = 0; to < places.size(); ++to) {
-            const LegCost& leg = all.leg(places[from], places[to]);
-            energies.leg(from, to) = {std::isfinite(leg.cost) ? leg.energy_j : leg.cost, leg.energy_j};
-        }
-    }
-    const PlaceOrder order = best_order(energies);
-    return order.places.size() == count ? order.cost : std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
 SearchResult search_in_any_order(const Problem& problem, const PlannerModel& model, const SolveOptions& options) {
-    return AnyOrder(problem, model, options).run();
+    return AnyOrder<Plane>(problem, model, options).run();
+}
+
+SearchResultOf<Space> search_in_any_order(const SpaceProblem& problem, const PlannerModelOf<Space>& model,
+                                          const SolveOptionsOf<Space>& options) {
+    return AnyOrder<Space>(problem, model, options).run();
 }
 
 }  // namespace downwash::planning

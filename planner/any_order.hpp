@@ -5,6 +5,7 @@
 #include "downwash/planner/search_result.hpp"
 #include "downwash/planner/solve_options.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/problems/space_problem.hpp"
 
 namespace downwash::planning {
 
@@ -18,5 +19,9 @@ namespace downwash::planning {
 /// @pre the problem has targets
 [[nodiscard]] DOWNWASH_EXPORT SearchResult search_in_any_order(const Problem& problem, const PlannerModel& model,
                                                                const SolveOptions& options);
+
+/// The same in space.
+[[nodiscard]] SearchResultOf<Space> search_in_any_order(const SpaceProblem& problem, const PlannerModelOf<Space>& model,
+                                                        const SolveOptionsOf<Space>& options);
 
 }  // namespace downwash::planning

@@ -20,6 +20,12 @@ typename Family::Obstruction obstruction_of(const Certificate& certificate, cons
     return {std::string(has_failed(certificate) ? failed_certificate : unfinished_certificate), end_of(plan), 0};
 }
 
+/// Whether a search after a course is for the way to the last goal of a problem.
+template <class Family>
+bool is_last(const CourseOf<Family>& before, const typename Family::Problem& whole) {
+    return before.goals.size() + 1 == goals_of(whole).size();
+}
+
 }  // namespace
 
 template <class Family>
@@ -35,8 +41,9 @@ CandidateCheckOf<Family>::CandidateCheckOf(const Problem& part, const Problem& w
       task_(part, *model.flight, model.own_map.get(), before.vehicle,
             plans_flights(part.planner.variant) && checks.worlds != nullptr ? &search_worlds_ : nullptr,
             before.ticks()),
-      start_(before.plan.reference.empty() ? before.vehicle : start_state(*model.flight, whole.start)) {
-    if (before.goals.size() + 1 != goals_of(whole).size()) {
+      is_executed_alone_(before.plan.reference.empty() || (Family::executes_parts_alone && !is_last(before, whole))),
+      start_(is_executed_alone_ ? before.vehicle : start_state(*model.flight, whole.start)) {
+    if (!is_last(before, whole)) {
         checks_.stop_finder = nullptr;
     }
     goals_.push_back(goal_of(part));
@@ -92,11 +99,13 @@ template <class Family>
 bool CandidateCheckOf<Family>::flies_well(const Plan& plan, double cost) {
     unfinished_.reset();
     const Plan flown = before_.plan.followed_by(plan);
+    const Plan& executed = is_executed_alone_ ? plan : flown;
+    const std::vector<Goal> goals = is_executed_alone_ ? std::vector<Goal>{goal_of(task_.problem)} : goals_;
     bool is_finished = false;
     std::atomic<bool> is_bad = false;
     const auto fly = [&] {
         try {
-            flight_ = fly_directly(task_.model, start_, flown, goals_, energy_budget_of(task_.problem),
+            flight_ = fly_directly(task_.model, start_, executed, goals, task_.problem.energy_budget_j,
                                    [this] { return check_is_over(); });
             is_finished = true;
         } catch (const WorkStopped&) {  // too late

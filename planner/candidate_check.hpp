@@ -117,7 +117,8 @@ class CandidateCheckOf {
     SearchClock clock_;
     SearchWorlds search_worlds_;
     SearchTask task_;
-    FlightState start_;                            ///< where the whole flight begins
+    bool is_executed_alone_;                       ///< what is executed begins at the end of the course
+    FlightState start_;                            ///< where that begins
     std::optional<DirectFlight> flight_;           ///< made last
     std::optional<Obstruction> discarded_;         ///< what discarded the last plan that was
     std::optional<Certificate> certificate_;       ///< certificate of the plan that was executed last

@@ -20,6 +20,8 @@ constexpr const char* flies_otherwise = "a part of a plan does not fly as it was
 
 Problem part_of(const Problem& problem, const Goal& goal, const Plan& before) {
     Problem part = problem;
+    part.targets.clear();
+    part.return_to.reset();
     part.goals_before.clear();
     part.goal = goal;
     if (!before.reference.empty()) {
@@ -32,15 +34,20 @@ SpaceProblem part_of(const SpaceProblem& problem, const SpaceGoal& goal, const S
     SpaceProblem part = problem;
     part.goals = {goal};
     part.in_any_order = false;
+    part.return_to.reset();
     if (!before.reference.empty()) {
-        const SpaceConfiguration at = end_of(before);
-        part.start = {};
-        std::copy_n(at.coordinate.begin(), 3, part.start.position_m.begin());
-        part.start.yaw_rad = at[space::yaw];
-        const auto first = at.coordinate.begin() + space::first_joint;
-        part.start.joints_rad.assign(first, first + before.joints);
+        part.start = start_at(problem, end_of(before));
     }
     return part;
+}
+
+SpaceStart start_at(const SpaceProblem& problem, const SpaceConfiguration& at) {
+    SpaceStart start;
+    std::copy_n(at.coordinate.begin(), 3, start.position_m.begin());
+    start.yaw_rad = at[space::yaw];
+    const auto first = at.coordinate.begin() + space::first_joint;
+    start.joints_rad.assign(first, first + problem.robot.joints());
+    return start;
 }
 
 SpacePlan with_hover(const SpacePlan& plan, const SpaceGoal& goal, const SpaceProblemModel& model) {
@@ -82,13 +89,14 @@ AnySpaceState flown_on(const PlannerModelOf<Space>& model, const SpacePlan& plan
     return job.end();
 }
 
-DirectFlightOf<Space> fly_directly(const SpaceProblemModel& model, const AnySpaceState& /*start*/,
-                                   const SpacePlan& plan, const std::vector<SpaceGoal>& goals,
-                                   std::optional<double> /*energy_budget_j*/, const StopCondition& is_over) {
+DirectFlightOf<Space> fly_directly(const SpaceProblemModel& model, const AnySpaceState& start, const SpacePlan& plan,
+                                   const std::vector<SpaceGoal>& goals, std::optional<double> /*energy_budget_j*/,
+                                   const StopCondition& is_over) {
     const Stopwatch clock;
     const SpaceGoalRule rule(model.problem().robot, model.shared_scene(), goals);
     SpaceExecutionSettings settings;
     settings.goals = &rule;
+    settings.start = motion_of(start);
     settings.is_over = is_over;
     SpaceFlight execution = model.execute(plan, settings);
     return {std::move(execution), clock.seconds()};
@@ -121,6 +129,9 @@ Obstruction obstruction_of(const Execution& flight, const SearchTask& task) {
 }
 
 SpaceObstruction obstruction_of(const SpaceFlight& flight, const SearchTaskOf<Space>& task) {
+    if (flight.outcome == Outcome::over_budget) {
+        return {std::string(name_of(flight.outcome)), configuration_of(flight.rows.back().motion), 0};
+    }
     const auto nearest = std::ranges::min_element(flight.rows, {}, &SpaceFlightRow::clearance_m);
     const bool is_too_near = flight.outcome == Outcome::ok || flight.outcome == Outcome::collision;
     const SpaceMotion& motion = (is_too_near ? *nearest : flight.rows.back()).motion;

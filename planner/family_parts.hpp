@@ -13,18 +13,10 @@
 
 // What the planner asks of problems, plans and flights of both families.
 
-namespace downwash {
-
-/// All goals in the order of the file.
-[[nodiscard]] inline const std::vector<SpaceGoal>& goals_of(const SpaceProblem& problem) noexcept {
-    return problem.goals;
-}
-
-}  // namespace downwash
-
 namespace downwash::planning {
 
-/// A problem with a single goal, from where a plan before ends; without knots, from its own start.
+/// A problem with a single goal and nothing else to do, from where a plan before ends; without knots, from its own
+/// start.
 [[nodiscard]] Problem part_of(const Problem& problem, const Goal& goal, const Plan& before);
 [[nodiscard]] SpaceProblem part_of(const SpaceProblem& problem, const SpaceGoal& goal, const SpacePlan& before);
 
@@ -36,13 +28,11 @@ namespace downwash::planning {
     return part.goals.front();
 }
 
-/// What flights may take [J]; empty: any. Problems in space have no budget.
-[[nodiscard]] inline std::optional<double> energy_budget_of(const Problem& problem) noexcept {
-    return problem.energy_budget_j;
+/// A vehicle that rests at a configuration.
+[[nodiscard]] inline Start start_at(const Problem& /*problem*/, const Configuration& at) {
+    return Start::resting_at(at);
 }
-[[nodiscard]] inline std::optional<double> energy_budget_of(const SpaceProblem& /*problem*/) noexcept {
-    return std::nullopt;
-}
+[[nodiscard]] SpaceStart start_at(const SpaceProblem& problem, const SpaceConfiguration& at);
 
 /// Where a plan ends. @pre there is a knot
 [[nodiscard]] inline Configuration end_of(const Plan& plan) {
@@ -62,8 +52,8 @@ namespace downwash::planning {
 [[nodiscard]] AnySpaceState flown_on(const PlannerModelOf<Space>& model, const SpacePlan& plan, std::size_t first,
                                      const AnySpaceState& vehicle);
 
-/// Executes a plan in space with direct aerodynamics, from the problem's start through the first goals; see
-/// fly_directly() of the plane.
+/// Executes a plan in space with direct aerodynamics; see fly_directly() of the plane.
+/// @param start of which the controller's memory does not count   @param energy_budget_j that of the problem
 [[nodiscard]] DirectFlightOf<Space> fly_directly(const SpaceProblemModel& model, const AnySpaceState& start,
                                                  const SpacePlan& plan, const std::vector<SpaceGoal>& goals,
                                                  std::optional<double> energy_budget_j, const StopCondition& is_over);
@@ -74,6 +64,12 @@ namespace downwash::planning {
 /// What an executed flight costs.
 [[nodiscard]] double cost_when_executed(const Execution& flight, const CostFunction& objective);
 [[nodiscard]] double cost_when_executed(const SpaceFlight& flight, const CostFunction& objective);
+
+/// What a plan costs when it is executed or, as long as it was not, by the planner's own figure.
+template <class AnyFound>
+[[nodiscard]] double cost_when_flown(const AnyFound& found, const CostFunction& objective) {
+    return found.execution ? cost_when_executed(*found.execution, objective) : found.cost;
+}
 
 /// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
 [[nodiscard]] Obstruction obstruction_of(const Execution& flight, const SearchTask& task);

@@ -7,8 +7,4 @@ double cost_of(const Execution& execution, const CostFunction& objective) {
     return objective({sums, execution.energy_j, execution.duration_s, execution.clearance_integral});
 }
 
-double cost_of(const Found& found, const CostFunction& objective) {
-    return found.execution ? cost_of(*found.execution, objective) : found.cost;
-}
-
 }  // namespace downwash

@@ -84,13 +84,13 @@ class DOWNWASH_EXPORT GoalSequenceOf {
     [[nodiscard]] bool goes_on_after(SearchResult part);
     [[nodiscard]] bool go_back(std::size_t part);
     [[nodiscard]] bool give_up();
-    [[nodiscard]] bool is_thrifty() const { return energy_budget_of(problem_) && !effort_.has_energy_to_spare; }
+    [[nodiscard]] bool is_thrifty() const { return problem_.energy_budget_j && !effort_.has_energy_to_spare; }
     void end_round();
     [[nodiscard]] SearchBudget budget_of(std::size_t part) const;
     [[nodiscard]] SolveOptions options_of_part();
     [[nodiscard]] double share(std::size_t part) const;
     [[nodiscard]] double cost_when_flown(const Found& way) const {
-        return way.execution ? cost_when_executed(*way.execution, problem_.planner.objective) : way.cost;
+        return planning::cost_when_flown(way, problem_.planner.objective);
     }
     [[nodiscard]] bool is_better(const Found& way) const;
     void note_improvements(const Course& before, const SearchRecord& last, double begun_at_s,

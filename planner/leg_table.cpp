@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goal_search.hpp"
 #include "downwash/search/free_air_cost.hpp"
 
@@ -12,10 +13,13 @@ namespace downwash::planning {
 namespace {
 
 /// The goals of every place: of the targets with their alternatives, and of the place to return to.
-std::vector<std::pair<Visit, Goal>> goals_at_places(const Problem& problem) {
+template <class AnyProblem>
+auto goals_at_places(const AnyProblem& problem) {
+    const auto targets = targets_of(problem);
+    using Goal = typename decltype(targets)::value_type;
     std::vector<std::pair<Visit, Goal>> goals;
-    for (std::size_t i = 0; i < problem.targets.size(); ++i) {
-        const Goal& target = problem.targets[i];
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+        const Goal& target = targets[i];
         for (std::size_t k = 0; k < target.any_of.size(); ++k) {
             goals.emplace_back(Visit{i, k}, target.any_of[k]);
         }
@@ -24,45 +28,35 @@ std::vector<std::pair<Visit, Goal>> goals_at_places(const Problem& problem) {
         }
     }
     if (problem.return_to) {
-        goals.emplace_back(Visit{problem.targets.size(), std::nullopt}, *problem.return_to);
+        goals.emplace_back(Visit{targets.size(), std::nullopt}, *problem.return_to);
     }
     return goals;
 }
 
-std::vector<std::size_t> targets_of_places(const Problem& problem) {
+template <class AnyProblem>
+std::vector<std::size_t> targets_of_places(const AnyProblem& problem) {
     std::vector<std::size_t> targets;
     for (const auto& [visit, goal] : goals_at_places(problem)) {
-        if (visit.target < problem.targets.size()) {
+        if (visit.target < targets_of(problem).size()) {
             targets.push_back(visit.target);
         }
     }
     return targets;
 }
 
-/// The way to one goal, which begins anywhere.
-Problem problem_to(const Problem& problem, const Goal& goal) {
-    Problem part = problem;
-    part.targets.clear();
-    part.return_to.reset();
-    part.goals_before.clear();
-    part.goal = goal;
-    return part;
-}
-
 }  // namespace
 
 /// Lower bounds of the cost and the energy of the way to a goal.
-class LegTable::Bounds {
+template <class Family>
+class LegTableOf<Family>::Bounds {
  public:
+    using FlightModel = typename Family::FlightModel;
+
     Bounds(const Problem& problem, const Goal& goal, const FlightModel& model)
-        : Bounds(without_obstacles(problem_to(problem, goal)), model) {}
+        : Bounds(without_obstacles(part_of(problem, goal, {})), model) {}
 
     [[nodiscard]] LegCost from(const Configuration& at) const {
         return {cost_.min_cost_to_goal(at), energy_.min_cost_to_goal(at)};
-    }
-    /// What the level vehicle takes in that time, hovering in free air [J].
-    [[nodiscard]] double hover_energy_j(const Configuration& at, double duration_s) const {
-        return energy_.of_hold(at, duration_s);
     }
     /// A configuration that meets the goal; it may be in collision.
     [[nodiscard]] Configuration within_goal(const Configuration& near) const {
@@ -89,17 +83,18 @@ class LegTable::Bounds {
     }
 
     Problem problem_, energy_problem_;
-    SearchTask task_, energy_task_;
-    FreeAirCost cost_, energy_;
+    SearchTaskOf<Family> task_, energy_task_;
+    FreeAirCostOf<Family> cost_, energy_;
 };
 
-LegTable::LegTable(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
+template <class Family>
+LegTableOf<Family>::LegTableOf(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
     : problem_(problem),
       model_(model),
       options_(options),
       start_(Course::from_start(problem, *model.flight)),
       estimates_(targets_of_places(problem)) {
-    const Configuration start = problem.start.at;
+    const Configuration start = place_of(problem.start);
     for (auto& [visit, goal] : goals_at_places(problem)) {
         bounds_.push_back(std::make_unique<Bounds>(problem, goal, *model.flight));
         places_.push_back({visit, std::move(goal), bounds_.back()->within_goal(start), std::nullopt});
@@ -112,11 +107,13 @@ LegTable::LegTable(const Problem& problem, const PlannerModel& model, const Solv
     }
 }
 
-LegTable::~LegTable() = default;
+template <class Family>
+LegTableOf<Family>::~LegTableOf() = default;
 
 /// Sets the lower bounds of the legs from a place that are not flown.
-void LegTable::bound_legs_from(std::size_t from) {
-    const Configuration at = from == estimates_.outside() ? problem_.start.at : places_[from].at;
+template <class Family>
+void LegTableOf<Family>::bound_legs_from(std::size_t from) {
+    const Configuration at = from == estimates_.outside() ? place_of(problem_.start) : places_[from].at;
     for (std::size_t to = 0; to <= estimates_.outside(); ++to) {
         if (!is_leg(from, to)) {
             estimates_.leg(from, to) = to < estimates_.outside() ? LegCost{} : LegCost{0, 0};
@@ -127,14 +124,16 @@ void LegTable::bound_legs_from(std::size_t from) {
 }
 
 /// Not between places of one target, nor back to where the flight may end anywhere.
-bool LegTable::is_leg(std::size_t from, std::size_t to) const {
+template <class Family>
+bool LegTableOf<Family>::is_leg(std::size_t from, std::size_t to) const {
     if (to == estimates_.outside()) {
         return problem_.return_to.has_value();
     }
     return from == estimates_.outside() || places_[from].visit.target != places_[to].visit.target;
 }
 
-LegCosts LegTable::costs_or(const std::optional<LegCost>& other) const {
+template <class Family>
+LegCosts LegTableOf<Family>::costs_or(const std::optional<LegCost>& other) const {
     LegCosts costs = estimates_;
     for (std::size_t from = 0; from <= costs.outside(); ++from) {
         for (std::size_t to = 0; to <= costs.outside(); ++to) {
@@ -149,7 +148,8 @@ LegCosts LegTable::costs_or(const std::optional<LegCost>& other) const {
     return costs;
 }
 
-void LegTable::begin_pass() {
+template <class Family>
+void LegTableOf<Family>::begin_pass() {
     ++pass_;
     for (LegState& state : legs_) {
         state.is_known = false;
@@ -159,11 +159,13 @@ void LegTable::begin_pass() {
     }
 }
 
-bool LegTable::is_known(std::size_t from, std::size_t to) const {
+template <class Family>
+bool LegTableOf<Family>::is_known(std::size_t from, std::size_t to) const {
     return !is_leg(from, to) || leg(from, to).is_known;
 }
 
-SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget& budget, double most_s) {
+template <class Family>
+SearchRecord LegTableOf<Family>::fly(std::size_t from, std::size_t to, const SearchBudget& budget, double most_s) {
     LegState& state = leg(from, to);
     const Course* const before = from == estimates_.outside() ? &start_
                                  : places_[from].hover        ? &*places_[from].hover
@@ -172,9 +174,9 @@ SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget&
         return {};
     }
     Place& place = places_[to];
-    Problem part = problem_to(problem_, place.goal);
+    Problem part = part_of(problem_, place.goal, {});
     if (from != estimates_.outside()) {
-        part.start = Start::resting_at(places_[from].at);
+        part.start = start_at(problem_, places_[from].at);
     }
     const std::size_t legs = legs_.size();
     part.planner.seed += static_cast<std::uint32_t>((pass_ + static_cast<std::uint32_t>(state.failures)) * legs +
@@ -185,8 +187,8 @@ SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget&
     options.keep_tree = false;
     options.stop_at_first_solution = false;
     options.on_plan = nullptr;
-    const SearchResult result = search_goal(part, part, model_, *before, {}, options);
-    const Found& found = result.found;
+    const SearchResultOf<Family> result = search_goal(part, part, model_, *before, {}, options);
+    const FoundOf<Family>& found = result.found;
     const bool is_unfinished = found.obstruction && found.obstruction->cause == unfinished_flight && found.plan;
     if (found.status != Status::solved && !is_unfinished) {
         if (std::isfinite(state.flown.cost)) {  // there is a flight of a pass before
@@ -200,14 +202,14 @@ SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget&
     Course hover = advanced(*before, place.goal, *found.plan, found.cost, model_, problem_.planner.variant);
     LegCost cost{found.cost, hover.vehicle.plant.energy_j - before->vehicle.plant.energy_j};
     if (found.execution) {
-        cost = {cost_of(*found.execution, problem_.planner.objective), found.execution->energy_j};
+        cost = {cost_when_executed(*found.execution, problem_.planner.objective), found.execution->energy_j};
     }
     legs_flown_ += std::isfinite(state.flown.cost) ? 0 : 1;
     state.flown = cost.cost < state.flown.cost ? cost : state.flown;
     state.is_known = true;
     estimates_.leg(from, to) = state.flown;
     if (!place.hover) {
-        place.at = found.plan->last();
+        place.at = end_of(*found.plan);
         hover.goals.clear();
         hover.plan = {};
         hover.cost = 0;
@@ -220,12 +222,14 @@ SearchRecord LegTable::fly(std::size_t from, std::size_t to, const SearchBudget&
     return result.record;
 }
 
-void LegTable::give_up(std::size_t from, std::size_t to) {
+template <class Family>
+void LegTableOf<Family>::give_up(std::size_t from, std::size_t to) {
     leg(from, to) = {false, 0, true, {}};
     estimates_.leg(from, to) = {};
 }
 
-void LegTable::put_off(std::size_t to) {
+template <class Family>
+void LegTableOf<Family>::put_off(std::size_t to) {
     for (std::size_t from = 0; from <= estimates_.outside(); ++from) {
         LegState& state = leg(from, to);
         if (is_leg(from, to) && !std::isfinite(state.flown.cost)) {
@@ -235,7 +239,8 @@ void LegTable::put_off(std::size_t to) {
     }
 }
 
-bool LegTable::search_on() {
+template <class Family>
+bool LegTableOf<Family>::search_on() {
     const bool is_any = std::ranges::any_of(
         legs_, [this](const LegState& state) { return !state.is_given_up && state.failures >= most_failures_; });
     if (is_any) {
@@ -247,7 +252,8 @@ bool LegTable::search_on() {
     return is_any;
 }
 
-bool LegTable::is_out_of_reach(std::size_t target) const {
+template <class Family>
+bool LegTableOf<Family>::is_out_of_reach(std::size_t target) const {
     for (std::size_t to = 0; to < estimates_.outside(); ++to) {
         for (std::size_t from = 0; from <= estimates_.outside() && places_[to].visit.target == target; ++from) {
             if (is_leg(from, to) && !is_closed(leg(from, to))) {
@@ -257,5 +263,8 @@ bool LegTable::is_out_of_reach(std::size_t target) const {
     }
     return true;
 }
+
+template class LegTableOf<Plane>;
+template class LegTableOf<Space>;
 
 }  // namespace downwash::planning

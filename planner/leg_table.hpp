@@ -18,13 +18,21 @@ namespace downwash::planning {
 /// What the ways between the start, the targets with their alternatives, and the place to return to cost. A leg is
 /// flown by a short search from the vehicle that hovers where the first leg to its place ended. Before it is flown its
 /// cost is a lower bound: that of straight motion in free air to the goal region, and the hold there.
-class DOWNWASH_EXPORT LegTable {
+template <class Family>
+class DOWNWASH_EXPORT LegTableOf {
  public:
+    using Problem = typename Family::Problem;
+    using Goal = typename Family::Goal;
+    using Configuration = typename Family::Configuration;
+    using PlannerModel = PlannerModelOf<Family>;
+    using SolveOptions = SolveOptionsOf<Family>;
+    using Course = CourseOf<Family>;
+
     /// @param problem with targets   @param options for threads and stop   @pre all outlive it
-    LegTable(const Problem& problem, const PlannerModel& model, const SolveOptions& options);
-    ~LegTable();
-    LegTable(const LegTable&) = delete;
-    LegTable& operator=(const LegTable&) = delete;
+    LegTableOf(const Problem& problem, const PlannerModel& model, const SolveOptions& options);
+    ~LegTableOf();
+    LegTableOf(const LegTableOf&) = delete;
+    LegTableOf& operator=(const LegTableOf&) = delete;
 
     /// Costs of the legs that were flown in this pass, and lower bounds of the others; legs to which no flight was
     /// found are infinite.
@@ -102,5 +110,6 @@ class DOWNWASH_EXPORT LegTable {
     int most_failures_ = 2;
     std::uint32_t pass_ = 0;  ///< number of the pass; in each one the searches draw other samples
 };
+using LegTable = LegTableOf<Plane>;
 
 }  // namespace downwash::planning

@@ -12,7 +12,8 @@ bool is_order(const PlaceOrder& order) {
     return std::isfinite(order.cost) && !order.places.empty();
 }
 
-SearchRecord OrderComparison::compare(const SearchBudget& budget) {
+template <class Family>
+SearchRecord OrderComparisonOf<Family>::compare(const SearchBudget& budget) {
     const auto targets = static_cast<double>(table_.estimates().targets());
     const double legs = std::min(targets * (targets + 1), 6 * (targets + 1));
     constexpr double least_s = 0.1;  // of less nobody learns whether there is a way
@@ -36,7 +37,8 @@ SearchRecord OrderComparison::compare(const SearchBudget& budget) {
 
 /// Flies the legs of one order after the other, until one consists of flown legs that is the best.
 /// @return false if the budget was used up before
-bool OrderComparison::converges(const SearchBudget& slice, Work& work) {
+template <class Family>
+bool OrderComparisonOf<Family>::converges(const SearchBudget& slice, Work& work) {
     bool is_nearest_first = true;
     std::vector<std::size_t> hint;
     while (!is_over(work)) {
@@ -53,7 +55,8 @@ bool OrderComparison::converges(const SearchBudget& slice, Work& work) {
 
 /// Flies the legs of an order that are not flown yet. One to which no flight is found ends it: another order may be
 /// better then. @return false if none was missing
-bool OrderComparison::fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, Work& work) {
+template <class Family>
+bool OrderComparisonOf<Family>::fly_missing_legs(const PlaceOrder& order, const SearchBudget& slice, Work& work) {
     bool was_missing = false;
     std::size_t from = table_.estimates().outside();
     std::vector<std::size_t> stations = order.places;
@@ -78,7 +81,8 @@ bool OrderComparison::fly_missing_legs(const PlaceOrder& order, const SearchBudg
     return was_missing;
 }
 
-PlaceOrder OrderComparison::chosen() const {
+template <class Family>
+PlaceOrder OrderComparisonOf<Family>::chosen() const {
     PlaceOrder flown = best_order(limited(table_.flown_costs()));
     PlaceOrder other = best_order(limited(table_.lower_bounds()), flown.places);
     const bool is_flown = is_order(flown) && flown.places.size() >= other.places.size();
@@ -87,5 +91,8 @@ PlaceOrder OrderComparison::chosen() const {
     other.is_best = false;
     return is_flown ? flown : other;
 }
+
+template class OrderComparisonOf<Plane>;
+template class OrderComparisonOf<Space>;
 
 }  // namespace downwash::planning

@@ -7,10 +7,13 @@
 namespace downwash::planning {
 
 /// Compares orders of targets by simulated legs, and simulates only legs that may belong to the best order.
-class DOWNWASH_EXPORT OrderComparison {
+template <class Family>
+class DOWNWASH_EXPORT OrderComparisonOf {
  public:
+    using LegTable = LegTableOf<Family>;
+
     /// @param is_stopped asked between legs   @pre table outlives it
-    OrderComparison(LegTable& table, StopCondition is_stopped)
+    OrderComparisonOf(LegTable& table, StopCondition is_stopped)
         : energy_limit_j(table.estimates().energy_budget_j), table_(table), is_stopped_(std::move(is_stopped)) {}
 
     /// First simulates the legs of nearest_first(), so that no costlier order is chosen. Then it simulates those of the

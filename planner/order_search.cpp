@@ -103,6 +103,59 @@ class ExactSearch {
     std::vector<std::vector<std::size_t>> states_;  ///< labels of each set and last place
 };
 
+/// What moves of sections of an order do to its cost, in constant time each.
+class SectionMoves {
+ public:
+    SectionMoves(const LegCosts& costs, const std::vector<std::size_t>& places)
+        : costs_(costs),
+          at_(places),
+          forwards_(places.size() + 2),
+          backwards_(places.size() + 2),
+          closed_(places.size() + 2) {
+        at_.insert(at_.begin(), costs.outside());
+        at_.push_back(costs.outside());
+        for (std::size_t i = 1; i < at_.size(); ++i) {
+            forwards_[i] = forwards_[i - 1] + leg(i - 1, i);
+            const double back = i > 1 && i < places.size() + 1 ? leg(i, i - 1) : 0;
+            backwards_[i] = backwards_[i - 1] + (std::isfinite(back) ? back : 0);
+            closed_[i] = closed_[i - 1] + (std::isfinite(back) ? 0 : 1);
+        }
+    }
+
+    /// Whether an order in which a section stands elsewhere, or the other way round, is cheaper or, by rounding, may
+    /// be. @param from,length of the section among the places   @param to where it begins among them then
+    [[nodiscard]] bool may_help(std::size_t from, std::size_t length, std::size_t to, bool is_reversed) const {
+        if (!std::isfinite(forwards_.back())) {
+            return true;  // of an infinite order nothing is known
+        }
+        const std::size_t first = from + 1, last = from + length;
+        if (is_reversed && closed_[last] > closed_[first]) {
+            return false;
+        }
+        const std::size_t before = to <= from ? to : to + length;
+        const std::size_t after = to < from ? to + 1 : to + length + 1;
+        const double inner = forwards_[last] - forwards_[first];
+        double gained = leg(first - 1, first) + inner + leg(last, last + 1);
+        double paid = leg(before, is_reversed ? last : first) +
+                      (is_reversed ? backwards_[last] - backwards_[first] : inner) +
+                      leg(is_reversed ? first : last, after);
+        if (to != from) {
+            gained += leg(before, after);
+            paid += leg(first - 1, last + 1);
+        }
+        constexpr double rounding = 1e-9;
+        return paid - gained <= rounding * forwards_.back();
+    }
+
+ private:
+    [[nodiscard]] double leg(std::size_t from, std::size_t to) const { return costs_.leg(at_[from], at_[to]).cost; }
+
+    const LegCosts& costs_;
+    std::vector<std::size_t> at_;               ///< the start, the places, the end
+    std::vector<double> forwards_, backwards_;  ///< sums of the legs up to each of them; backwards of those that exist
+    std::vector<int> closed_;                   ///< how many legs backwards do not
+};
+
 /// Improves an order by small changes until none helps.
 class LocalSearch {
  public:
@@ -199,13 +252,17 @@ class LocalSearch {
 
     /// 2-opt is a section that is turned where it stands.
     bool move_sections(PlaceOrder& order) const {
+        constexpr std::size_t longest_moved = 3;
+        const SectionMoves moves(costs_, order.places);
         const std::size_t count = order.places.size();
         for (std::size_t length = 1; length <= count; ++length) {
             for (std::size_t from = 0; from + length <= count; ++from) {
-                for (std::size_t to = 0; to + length <= count; ++to) {
-                    const bool is_far = length > 3 && to != from;
+                const std::size_t first = length > longest_moved ? from : 0;
+                const std::size_t last = length > longest_moved ? from : count - length;
+                for (std::size_t to = first; to <= last; ++to) {
                     for (const bool is_reversed : {false, true}) {
-                        if (!is_far && keep_if_better(order, moved(order.places, from, length, to, is_reversed))) {
+                        if (moves.may_help(from, length, to, is_reversed) &&
+                            keep_if_better(order, moved(order.places, from, length, to, is_reversed))) {
                             return true;
                         }
                     }
@@ -300,6 +357,31 @@ PlaceOrder best_order(const LegCosts& costs, const std::vector<std::size_t>& hin
         }
     }
     return best;
+}
+
+double energy_with(const LegCosts& costs, const std::vector<std::size_t>& visited, std::size_t target) {
+    std::vector<std::size_t> places;
+    std::vector<std::size_t> target_of;
+    std::vector<std::size_t> numbers(costs.targets(), costs.targets());
+    std::size_t count = 0;
+    for (std::size_t place = 0; place < costs.places(); ++place) {
+        const std::size_t of = costs.target_of(place);
+        if (of == target || std::ranges::find(visited, place) != visited.end()) {
+            numbers[of] = numbers[of] == costs.targets() ? count++ : numbers[of];
+            places.push_back(place);
+            target_of.push_back(numbers[of]);
+        }
+    }
+    LegCosts energies(std::move(target_of));
+    places.push_back(costs.outside());
+    for (std::size_t from = 0; from < places.size(); ++from) {
+        for (std::size_t to = 0; to < places.size(); ++to) {
+            const LegCost& leg = costs.leg(places[from], places[to]);
+            energies.leg(from, to) = {std::isfinite(leg.cost) ? leg.energy_j : leg.cost, leg.energy_j};
+        }
+    }
+    const PlaceOrder order = best_order(energies);
+    return order.places.size() == count ? order.cost : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace downwash::planning

@@ -60,6 +60,11 @@ struct PlaceOrder {
 /// @param hint to begin with; may be empty
 [[nodiscard]] DOWNWASH_EXPORT PlaceOrder best_order(const LegCosts& costs, const std::vector<std::size_t>& hint = {});
 
+/// What a flight to some places takes with a target more, in the order that takes least [J]; infinite where there is no
+/// leg to it.
+[[nodiscard]] DOWNWASH_EXPORT double energy_with(const LegCosts& costs, const std::vector<std::size_t>& visited,
+                                                 std::size_t target);
+
 /// Each time to the cheapest place that is left, as long as the energy is enough, return included.
 [[nodiscard]] DOWNWASH_EXPORT PlaceOrder nearest_first(const LegCosts& costs);
 

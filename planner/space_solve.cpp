@@ -5,10 +5,12 @@
 #include <utility>
 #include <variant>
 
+#include "downwash/planner/any_order.hpp"
 #include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goals_in_order.hpp"
 #include "downwash/planner/planner_model.hpp"
 #include "downwash/planner/stopwatch.hpp"
+#include "downwash/problems/visit_order.hpp"
 
 namespace downwash {
 namespace {
@@ -57,12 +59,11 @@ bool asks_for_contact(const SpaceGoal& goal) {
 std::vector<KeyError> space_planning_errors(const SpaceProblem& problem) {
     std::vector<KeyError> errors;
     const PlannerSettings& planner = problem.planner;
-    if (problem.in_any_order && problem.goals.size() > 1) {
-        errors.push_back({"goal.in_any_order", "cannot be planned in space yet: expected goals in an order"});
-    }
     for (std::size_t i = 0; i < problem.goals.size(); ++i) {
         if (asks_for_contact(problem.goals[i])) {
-            errors.push_back({problem.goals.size() == 1 ? "goal" : "goal[" + std::to_string(i) + "]",
+            const bool is_only = problem.goals.size() == 1 && !problem.in_any_order;
+            errors.push_back({std::string(problem.in_any_order ? "goal.in_any_order" : "goal") +
+                                  (is_only ? "" : "[" + std::to_string(i) + "]"),
                               "asks for contact, for which nothing plans in space yet: expected another goal"});
         }
     }
@@ -102,14 +103,18 @@ SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model, c
     const double setup_wall_s = since_call.seconds();
     try {
         const planning::PlannerModelOf<Space> own(problem.planner.variant, model, volumes);
-        planning::SearchResultOf<Space> found = planning::search_in_order(problem, own, options);
+        planning::SearchResultOf<Space> found = targets_of(problem).empty()
+                                                    ? planning::search_in_order(problem, own, options)
+                                                    : planning::search_in_any_order(problem, own, options);
         static_cast<FoundOf<Space>&>(result) = std::move(found.found);
         result.planning = std::move(found.record);
         result.planning.setup_wall_s = setup_wall_s;
         result.planning.map_wall_s = map_wall_s;
         if (result.plan && !(result.execution && result.status == Status::solved)) {
-            planning::DirectFlightOf<Space> flight = planning::fly_directly(
-                *model, {}, *result.plan, problem.goals, std::nullopt, planning::end_of_last_flight(options.stop));
+            planning::DirectFlightOf<Space> flight =
+                planning::fly_directly(*model, planning::start_state(*model, problem.start), *result.plan,
+                                       goals_of(in_order(problem, result.order)), problem.energy_budget_j,
+                                       planning::end_of_last_flight(options.stop));
             result.execution = std::move(flight.execution);
             result.flight_wall_s = flight.wall_s;
         }

@@ -60,13 +60,15 @@ std::vector<SpaceFlightLeg> legs_of(const SpacePlan& plan, std::size_t first, st
 /// Lets flights ask a condition as long as a call goes on.
 class Asking {
  public:
-    Asking(StopCondition& asked, const StopCondition& condition) : asked_(asked) { asked_ = condition; }
-    ~Asking() { asked_ = nullptr; }
+    Asking(StopCondition& asked, const StopCondition& condition)
+        : asked_(asked), before_(std::exchange(asked, condition)) {}
+    ~Asking() { asked_ = std::move(before_); }
     Asking(const Asking&) = delete;
     Asking& operator=(const Asking&) = delete;
 
  private:
     StopCondition& asked_;
+    StopCondition before_;
 };
 
 }  // namespace
@@ -76,7 +78,10 @@ SpaceProblemWorlds::SpaceProblemWorlds(const SpaceProblem& problem, const Planne
       model_(model),
       threads_(threads),
       among_surfaces_(problem.goals.size()),
-      own_(problem.goals.size()) {
+      own_(problem.goals.size()),
+      search_worlds_(search_worlds(problem)),
+      searching_(problem.goals.size()),
+      screened_(problem.goals.size() + 1) {
     for (const SpaceGoal& goal : problem.goals) {
         rules_.push_back(
             std::make_unique<SpaceGoalRule>(problem.robot, model.flight->shared_scene(), std::vector<SpaceGoal>{goal}));
@@ -137,22 +142,38 @@ SpaceProblemWorlds::Vehicles SpaceProblemWorlds::starts_in(std::span<const Space
 }
 
 SearchWorldsOf<Space> SpaceProblemWorlds::for_search(const CourseOf<Space>& before) {
-    std::vector<SpaceWorld> worlds = search_worlds(problem_);
-    const Vehicles vehicles = vehicles_after(before, worlds);
-    return worlds_of_search<Space>(std::move(worlds), vehicles);
+    // Courses grow goal by goal: the fleet flies on from the farthest place where it was before.
+    std::size_t known = before.goals.size() + 1;
+    while (known > 0 && (searching_[known - 1].vehicles.empty() || !is_flown(searching_[known - 1], before.plan))) {
+        --known;
+    }
+    FlownFleetOf<Space> fleet =
+        known > 0 ? searching_[known - 1] : FlownFleetOf<Space>{{}, starts_in(search_worlds_, false)};
+    advance(fleet.vehicles, before.plan, fleet.reference.empty() ? 0 : fleet.reference.size() - 1, search_worlds_);
+    fleet.reference = before.plan.reference;
+    SearchWorldsOf<Space> search = worlds_of_search<Space>(search_worlds_, fleet.vehicles);
+    searching_[before.goals.size()] = std::move(fleet);
+    return search;
 }
 
 SpaceProblemWorlds::Vehicles SpaceProblemWorlds::vehicles_after(const CourseOf<Space>& before,
                                                                 std::span<const SpaceWorld> worlds) {
     Vehicles vehicles = starts_in(worlds, false);
-    if (before.plan.reference.size() < 2) {
-        return vehicles;
+    advance(vehicles, before.plan, 0, worlds);
+    return vehicles;
+}
+
+void SpaceProblemWorlds::advance(Vehicles& vehicles, const SpacePlan& plan, std::size_t first,
+                                 std::span<const SpaceWorld> worlds) {
+    if (first + 1 >= plan.reference.size()) {
+        return;
     }
     std::vector<SpaceFlightJob> jobs;
     std::vector<std::size_t> world_of;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         if (vehicles[i]) {
-            jobs.push_back({*vehicles[i], legs_of(before.plan, 0, before.plan.reference.size() - 1), &worlds[i]});
+            jobs.push_back({*vehicles[i], legs_of(plan, first, plan.reference.size() - 1), &worlds[i],
+                            plan.reference[first].tick});
             world_of.push_back(i);
         }
     }
@@ -160,7 +181,6 @@ SpaceProblemWorlds::Vehicles SpaceProblemWorlds::vehicles_after(const CourseOf<S
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         vehicles[world_of[i]] = jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
     }
-    return vehicles;
 }
 
 std::vector<CounterexampleOf<Space>> SpaceProblemWorlds::counterexamples(const Certificate& certificate,
@@ -172,15 +192,15 @@ std::vector<CounterexampleOf<Space>> SpaceProblemWorlds::counterexamples(const C
     return counterexamples_of<Space>(worlds, vehicles_after(before, worlds));
 }
 
-std::vector<WorldSample> SpaceProblemWorlds::fly(const SpacePlan& plan, std::size_t visits, std::uint64_t first_world,
-                                                 std::span<const SpaceWorld> worlds, const StopCondition& is_over) {
+std::vector<WorldSample> SpaceProblemWorlds::fly_on(Vehicles& vehicles, const SpacePlan& plan, std::size_t first,
+                                                    std::size_t visits, std::uint64_t first_world,
+                                                    std::span<const SpaceWorld> worlds, const StopCondition& is_over) {
     const Asking scope(is_over_, is_over);
     const std::vector<SpaceGoal> goals(problem_.goals.begin(),
                                        problem_.goals.begin() + static_cast<std::ptrdiff_t>(visits));
     const SpaceGoalRule rule(problem_.robot, model_.flight->shared_scene(), goals);
     const std::vector<SpaceGoalHover> hovers = rule.hovers(plan);
     const SpacePlan held = plan.held_for(hovers.back().end_tick - plan.reference.back().tick);
-    const Vehicles vehicles = starts_in(worlds, true);
     std::vector<WorldSample> samples(worlds.size());
     std::vector<SpaceFlightJob> jobs;
     std::vector<std::size_t> world_of;
@@ -191,11 +211,15 @@ std::vector<WorldSample> SpaceProblemWorlds::fly(const SpacePlan& plan, std::siz
             world_of.push_back(i);
             samples[i].outcome = Outcome::ok;
             samples[i].min_clearance_m = infinity;
+            vehicles[i].reset();
         }
     }
     const std::int64_t settling = std::llround(goal_settling_s / plan.tick_s);
-    std::size_t knot = 0;
+    std::size_t knot = first;
     for (std::size_t visit = 0; visit < hovers.size(); ++visit) {
+        if (hovers[visit].end_tick <= plan.reference[first].tick) {
+            continue;
+        }
         const auto end = std::ranges::find_if(
             held.reference, [&](const SpaceKnot& each) { return each.tick == hovers[visit].end_tick; });
         const auto last = static_cast<std::size_t>(end - held.reference.begin());
@@ -226,20 +250,24 @@ std::vector<WorldSample> SpaceProblemWorlds::fly(const SpacePlan& plan, std::siz
         world_of = std::move(worlds_left);
         knot = last;
     }
-    if (hovers.size() < visits) {
-        for (const std::size_t i : world_of) {
-            samples[i].outcome = Outcome::goal_missed;
-            samples[i].goal = hovers.size();
+    const bool misses_a_goal = hovers.size() < visits;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        WorldSample& sample = samples[world_of[i]];
+        if (misses_a_goal) {
+            sample.outcome = Outcome::goal_missed;
+            sample.goal = hovers.size();
+        } else if (problem_.energy_budget_j && jobs[i].start.plant.energy_j > *problem_.energy_budget_j) {
+            sample.outcome = Outcome::over_budget;
+            sample.goal = visits - 1;
+        } else {
+            vehicles[world_of[i]] = jobs[i].start;
         }
     }
     return samples;
 }
 
-void SpaceProblemWorlds::fly_directly(const SpacePlan& plan, std::size_t visits, WorldSample& sample,
-                                      const StopCondition& is_over) const {
-    const std::vector<SpaceGoal> goals(problem_.goals.begin(),
-                                       problem_.goals.begin() + static_cast<std::ptrdiff_t>(visits));
-    const SpaceGoalRule rule(problem_.robot, model_.flight->shared_scene(), goals);
+void SpaceProblemWorlds::fly_directly(const SpacePlan& plan, WorldSample& sample, const StopCondition& is_over) const {
+    const SpaceGoalRule rule(problem_.robot, model_.flight->shared_scene(), problem_.goals);
     SpaceExecutionSettings settings;
     settings.world = world(sample.world);
     settings.goals = &rule;
@@ -251,12 +279,11 @@ void SpaceProblemWorlds::fly_directly(const SpacePlan& plan, std::size_t visits,
     sample.goal = missed != flight.goals.end() ? static_cast<std::size_t>(missed - flight.goals.begin()) : 0;
 }
 
-Certificate SpaceProblemWorlds::tested(const SpacePlan& whole, std::size_t visits, std::uint64_t first_world,
-                                       const StopCondition& is_over, const WorldCounter& counter,
+Certificate SpaceProblemWorlds::tested(const Test& test, const StopCondition& is_over, const WorldCounter& counter,
                                        CertificateRecord record) {
     constexpr std::uint64_t chunk = 64;  // a bad plan fails in the first of them
     // With direct aerodynamics: volumes are not the last word. A screening is none either.
-    const std::size_t flown_again = first_world == first_screening ? 0 : 2;
+    const std::size_t flown_again = test.fly_directly ? 2 : 0;
     bool is_checked = false;
     try {
         for (;;) {
@@ -270,8 +297,7 @@ Certificate SpaceProblemWorlds::tested(const SpacePlan& whole, std::size_t visit
                     break;
                 }
                 std::vector<WorldSample> again = record.nearest_successes(flown_again);
-                run_parallel(again.size(), threads_,
-                             [&](std::size_t i) { fly_directly(whole, visits, again[i], is_over); });
+                run_parallel(again.size(), threads_, [&](std::size_t i) { test.fly_directly(again[i]); });
                 is_checked = !record.replace(again);
                 if (is_checked) {
                     break;
@@ -279,11 +305,11 @@ Certificate SpaceProblemWorlds::tested(const SpacePlan& whole, std::size_t visit
                 continue;
             }
             std::vector<SpaceWorld> worlds;
-            const std::uint64_t first = first_world + record.worlds();
+            const std::uint64_t number = record.worlds();
             for (std::uint64_t i = 0; i < std::min(chunk, wanted); ++i) {
-                worlds.push_back(world(first + i));
+                worlds.push_back(world(test.first_world + number + i));
             }
-            for (const WorldSample& sample : fly(whole, visits, first, worlds, is_over)) {
+            for (const WorldSample& sample : test.fly(number, worlds)) {
                 record.add(sample);
             }
         }
@@ -295,17 +321,69 @@ Certificate SpaceProblemWorlds::tested(const SpacePlan& whole, std::size_t visit
 Certificate SpaceProblemWorlds::certify(const SpacePlan& whole, std::uint64_t attempt, const StopCondition& is_over,
                                         const WorldCounter& counter) {
     const PlannerSettings& settings = problem_.planner;
-    return tested(whole, goals(), attempt * worlds_per_attempt, is_over, counter,
+    const std::uint64_t first_world = attempt * worlds_per_attempt;
+    const auto fly = [&](std::uint64_t number, std::span<const SpaceWorld> worlds) {
+        const Asking scope(is_over_, is_over);
+        Vehicles vehicles = starts_in(worlds, true);
+        return fly_on(vehicles, whole, 0, goals(), first_world + number, worlds, is_over);
+    };
+    const auto fly_again = [&](WorldSample& sample) { fly_directly(whole, sample, is_over); };
+    return tested({first_world, fly, fly_again}, is_over, counter,
                   CertificateRecord(settings.max_failure_probability, settings.confidence, attempt));
+}
+
+const FlownFleetOf<Space>& SpaceProblemWorlds::screened(const CourseOf<Space>& course, std::uint64_t worlds,
+                                                        const StopCondition& is_over) {
+    FlownFleetOf<Space>& fleet = screened_[course.goals.size()];
+    if (!is_flown(fleet, course.plan) || fleet.reference.size() != course.plan.reference.size()) {
+        fleet = {course.plan.reference, {}};
+    }
+    const std::uint64_t known = fleet.vehicles.size();
+    std::vector<SpaceWorld> more;
+    for (std::uint64_t i = known; i < worlds; ++i) {
+        more.push_back(world(first_screening + i));
+    }
+    if (more.empty()) {
+        return fleet;
+    }
+    const Asking scope(is_over_, is_over);
+    Vehicles vehicles = starts_in(more, true);
+    if (!course.goals.empty()) {
+        SpacePlan flown = course.plan;
+        flown.reference.pop_back();  // the hover for its last goal, which is flown again
+        static_cast<void>(fly_on(vehicles, flown, 0, course.goals.size(), first_screening + known, more, is_over));
+    }
+    fleet.vehicles.insert(fleet.vehicles.end(), vehicles.begin(), vehicles.end());
+    return fleet;
 }
 
 Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const SpacePlan& part,
                                        const StopCondition& is_over, const WorldCounter& counter) {
-    constexpr double confidence = 0.8, first_confidence = 0.5;  // see ProblemWorlds::screen()
+    // See ProblemWorlds::screen(). Of many goals each would take far more worlds than the whole: until a flight has
+    // failed as a whole, they are those of an equal share among so many.
+    constexpr double thoroughly_screened = 9;
+    const double part_of_worlds = std::min(1.0, thoroughly_screened / static_cast<double>(goals()));
+    const double confidence = before.attempts > 0 ? 0.8 : 1 - std::pow(0.5, part_of_worlds);
     const std::size_t visited = before.goals.size();
+    const SpacePlan whole = before.plan.followed_by(part);
+    const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
+    FlownFleetOf<Space> after{with_hover(whole, problem_.goals[visited], *model_.flight).reference, {}};
+    const auto fly = [&](std::uint64_t number, std::span<const SpaceWorld> worlds) {
+        const FlownFleetOf<Space>& fleet = screened(before, number + worlds.size(), is_over);
+        const auto begin = fleet.vehicles.begin() + static_cast<std::ptrdiff_t>(number);
+        Vehicles vehicles(begin, begin + static_cast<std::ptrdiff_t>(worlds.size()));
+        std::vector<WorldSample> samples =
+            fly_on(vehicles, whole, first, visited + 1, first_screening + number, worlds, is_over);
+        after.vehicles.insert(after.vehicles.end(), vehicles.begin(), vehicles.end());
+        return samples;
+    };
     const double share = problem_.planner.max_failure_probability / static_cast<double>(goals());
-    return tested(before.plan.followed_by(part), visited + 1, first_screening, is_over, counter,
-                  CertificateRecord(share, before.attempts > 0 ? confidence : first_confidence, 1, visited));
+    Certificate certificate =
+        tested({first_screening, fly}, is_over, counter, CertificateRecord(share, confidence, 1, visited));
+    if (certificate.is_given) {
+        screened_[visited + 1] = std::move(after);
+    }
+    return certificate;
 }
 
 }  // namespace downwash::planning

@@ -43,14 +43,28 @@ class SpaceProblemWorlds {
     /// Vehicles that have hovered at the start, or start there moving; nothing for those that do not stay there.
     [[nodiscard]] Vehicles starts_in(std::span<const SpaceWorld> worlds, bool among_surfaces);
     [[nodiscard]] Vehicles vehicles_after(const CourseOf<Space>& before, std::span<const SpaceWorld> worlds);
+    /// Moves vehicles on along a plan, from one of its knots to its last; nothing is left of those that fail.
+    void advance(Vehicles& vehicles, const SpacePlan& plan, std::size_t first, std::span<const SpaceWorld> worlds);
     /// Flies a plan through the first goals of the problem. @throws WorkStopped
-    [[nodiscard]] std::vector<WorldSample> fly(const SpacePlan& plan, std::size_t visits, std::uint64_t first_world,
-                                               std::span<const SpaceWorld> worlds, const StopCondition& is_over);
-    /// Flies a plan again in a world, with direct aerodynamics.
-    void fly_directly(const SpacePlan& plan, std::size_t visits, WorldSample& sample,
-                      const StopCondition& is_over) const;
-    [[nodiscard]] Certificate tested(const SpacePlan& whole, std::size_t visits, std::uint64_t first_world,
-                                     const StopCondition& is_over, const WorldCounter& counter,
+    /// @param vehicles at a knot of it, nothing where the flight failed before; in the end those at its end
+    /// @param first that knot: 0, or the one at which the hover for a goal ends
+    [[nodiscard]] std::vector<WorldSample> fly_on(Vehicles& vehicles, const SpacePlan& plan, std::size_t first,
+                                                  std::size_t visits, std::uint64_t first_world,
+                                                  std::span<const SpaceWorld> worlds, const StopCondition& is_over);
+    /// The fleet at the end of a course in so many first worlds of screenings, or more.
+    [[nodiscard]] const FlownFleetOf<Space>& screened(const CourseOf<Space>& course, std::uint64_t worlds,
+                                                      const StopCondition& is_over);
+    /// Flies a plan through all goals again in a world, with direct aerodynamics.
+    void fly_directly(const SpacePlan& plan, WorldSample& sample, const StopCondition& is_over) const;
+    /// Flights of one plan for a certificate or a screening.
+    struct Test {
+        std::uint64_t first_world;  ///< index
+        /// Flies it in worlds that follow the first one. @param number of the first of them, from 0
+        std::function<std::vector<WorldSample>(std::uint64_t number, std::span<const SpaceWorld> worlds)> fly;
+        /// Flies it again in one of these worlds, with direct aerodynamics; empty: no flight is.
+        std::function<void(WorldSample& sample)> fly_directly = {};
+    };
+    [[nodiscard]] Certificate tested(const Test& test, const StopCondition& is_over, const WorldCounter& counter,
                                      class CertificateRecord record);
 
     const SpaceProblem& problem_;
@@ -58,7 +72,10 @@ class SpaceProblemWorlds {
     int threads_;
     std::vector<std::unique_ptr<SpaceGoalRule>> rules_;             ///< one for each goal
     std::vector<std::unique_ptr<SpacePool>> among_surfaces_, own_;  ///< one for each goal, made when first needed
-    StopCondition is_over_;                                         ///< what flights ask
+    std::vector<SpaceWorld> search_worlds_;
+    /// By the number of goals that were visited: in the worlds of the search and in the first ones of screenings.
+    std::vector<FlownFleetOf<Space>> searching_, screened_;
+    StopCondition is_over_;  ///< what flights ask
 };
 
 }  // namespace downwash::planning

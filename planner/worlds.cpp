@@ -33,11 +33,6 @@ std::vector<double> quantiles_of_world(const Robot& robot, std::uint64_t number)
 /// Enough to tell which flights came nearest.
 constexpr ClearanceError rough_clearance{0.1, 0.02};
 
-bool is_same(const std::vector<ReferenceKnot>& a, const std::vector<ReferenceKnot>& b) {
-    return std::ranges::equal(
-        a, b, [](const ReferenceKnot& x, const ReferenceKnot& y) { return x.tick == y.tick && x.point == y.point; });
-}
-
 }  // namespace
 
 ProblemWorlds::ProblemWorlds(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
@@ -240,9 +235,9 @@ Certificate ProblemWorlds::certify(const Plan& whole, std::uint64_t attempt, con
                   CertificateRecord(settings.max_failure_probability, settings.confidence, attempt));
 }
 
-const ScreenedFleet& ProblemWorlds::screened(const Course& course, std::uint64_t worlds, const StopCondition& is_over) {
-    ScreenedFleet& fleet = fleets_[course.goals.size()];
-    if (!is_same(fleet.reference, course.plan.reference)) {
+const FlownFleet& ProblemWorlds::screened(const Course& course, std::uint64_t worlds, const StopCondition& is_over) {
+    FlownFleet& fleet = fleets_[course.goals.size()];
+    if (!is_flown(fleet, course.plan) || fleet.reference.size() != course.plan.reference.size()) {
         fleet = {course.plan.reference, {}};
     }
     const std::uint64_t known = fleet.vehicles.size();
@@ -268,10 +263,10 @@ Certificate ProblemWorlds::screen(const Course& before, const Plan& part, const 
     const std::size_t visited = before.goals.size();
     const Plan whole = before.plan.followed_by(part);
     const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
-    ScreenedFleet after{with_hover(whole, flights_.goals()[visited], flights_.model()).reference, {}};
+    FlownFleet after{with_hover(whole, flights_.goals()[visited], flights_.model()).reference, {}};
     const auto fly = [&](std::uint64_t number, std::span<const FlownWorld> worlds) {
         const auto begin = static_cast<std::ptrdiff_t>(number);
-        const ScreenedFleet& fleet = screened(before, number + worlds.size(), is_over);
+        const FlownFleet& fleet = screened(before, number + worlds.size(), is_over);
         std::vector<std::optional<FlightState>> vehicles(
             fleet.vehicles.begin() + begin,
             fleet.vehicles.begin() + begin + static_cast<std::ptrdiff_t>(worlds.size()));

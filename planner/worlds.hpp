@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,11 +20,22 @@ namespace downwash::planning {
 
 class CertificateRecord;
 
-/// The vehicles at the end of a flight in the first worlds of screenings, nothing where it failed.
-struct ScreenedFleet {
-    std::vector<ReferenceKnot> reference;  ///< flown; empty at the start
-    std::vector<std::optional<FlightState>> vehicles;
+/// Vehicles at the end of a flight in worlds, nothing where it failed.
+template <class Family>
+struct FlownFleetOf {
+    decltype(Family::Plan::reference) reference;  ///< flown; empty at the start
+    std::vector<std::optional<typename Family::FlightState>> vehicles;
 };
+using FlownFleet = FlownFleetOf<Plane>;
+
+/// Whether what a fleet has flown is the beginning of a plan.
+template <class Family>
+[[nodiscard]] bool is_flown(const FlownFleetOf<Family>& fleet, const typename Family::Plan& plan) {
+    const auto& flown = fleet.reference;
+    return flown.size() <= plan.reference.size() &&
+           std::equal(flown.begin(), flown.end(), plan.reference.begin(),
+                      [](const auto& a, const auto& b) { return a.tick == b.tick && a.point == b.point; });
+}
 
 /// Certificates of later attempts are flown in worlds of their own.
 inline constexpr std::uint64_t worlds_per_attempt = 1'000'000;
@@ -86,8 +98,7 @@ class DOWNWASH_EXPORT ProblemWorlds {
     [[nodiscard]] Certificate tested(const Test& test, const StopCondition& is_over, const WorldCounter& counter,
                                      CertificateRecord record);
     /// The fleet at the end of a course in so many first worlds of screenings, or more.
-    [[nodiscard]] const ScreenedFleet& screened(const Course& course, std::uint64_t worlds,
-                                                const StopCondition& is_over);
+    [[nodiscard]] const FlownFleet& screened(const Course& course, std::uint64_t worlds, const StopCondition& is_over);
     /// Flies a plan again in worlds in which it came nearest to an obstacle, and notes what comes of it: closely, and
     /// in some of them around the nearest moment with direct aerodynamics.
     void look_closely(const Plan& whole, std::size_t visits, std::vector<WorldSample>& samples,
@@ -104,7 +115,7 @@ class DOWNWASH_EXPORT ProblemWorlds {
     WorldFlights close_flights_;                 ///< the same with better clearances
     std::unique_ptr<WorldFlights> in_free_air_;  ///< in the planner's own model, where it knows of none
     int threads_;
-    std::vector<ScreenedFleet> fleets_;  ///< by the number of goals that were visited
+    std::vector<FlownFleet> fleets_;  ///< in the first worlds of screenings, by the number of goals that were visited
 };
 
 /// The goal on whose way the flights of a plan failed most often, from 0; of several the last. Empty if none failed.

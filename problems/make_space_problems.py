@@ -9,11 +9,11 @@ their robots.
 
 import sys
 
-from generators import around_a_pier, box_girder_chamber, culvert, girder_bay
+from generators import around_a_pier, box_girder_chamber, culvert, girder_bay, girder_survey
 from generators import pipe_rack, tank_shell, tunnel_crown, window
 from generators.shipped_files import PROBLEMS, check_or_write, write_files
 
-FAMILIES = [girder_bay, pipe_rack, culvert, tank_shell, box_girder_chamber, tunnel_crown, window, around_a_pier]
+FAMILIES = [girder_bay, girder_survey, pipe_rack, culvert, tank_shell, box_girder_chamber, tunnel_crown, window, around_a_pier]
 RANDOM_FAMILIES = {"girder_bay": girder_bay.with_boxes, "pipe_rack": pipe_rack.make}
 
 

@@ -132,7 +132,7 @@ struct Problem {
 inline constexpr std::size_t max_goals = 64;
 
 /// More targets than these are not planned for in any order.
-inline constexpr std::size_t max_targets = 20;
+inline constexpr std::size_t max_targets = 50;
 
 /// All goals in the order in which they are to be visited: `goals_before`, then `goal`. Targets in any order come as
 /// they stand in the file, then the place to return to; see in_order().

@@ -16,6 +16,7 @@ using Row = Parameter<SpaceGoal>;
 using Rows = std::vector<Row>;
 
 constexpr double largest_angle_deg = 180;
+constexpr std::string_view key_of_return = "goal.return_to";
 
 constexpr std::string_view kind_name(const SpaceConfigurationGoal* /*kind*/) {
     return "configuration";
@@ -164,6 +165,18 @@ Rows kind_rows() {
     return rows;
 }
 
+/// The keys of a configuration without the name of its kind.
+Rows configuration_rows() {
+    constexpr std::string_view prefix = "configuration.";
+    Rows rows;
+    add_configuration(rows);
+    rows.erase(rows.begin());
+    for (Row& row : rows) {
+        row.path.erase(0, prefix.size());
+    }
+    return rows;
+}
+
 using ProblemRows = std::vector<Parameter<SpaceProblem>>;
 
 /// @param goal names the SpaceGoal that has the keys
@@ -198,6 +211,38 @@ void add_goal(ProblemRows& rows, const std::string& path, GoalMember goal) {
     rows.push_back(hold(path + ".any_of[]", alternative));
 }
 
+/// What a mission to targets in any order has beside them.
+void add_mission(ProblemRows& rows) {
+    constexpr std::string_view with_targets = "with in_any_order";
+    const auto has_targets = [](const SpaceProblem& p, std::size_t) { return p.in_any_order; };
+    const auto return_to = [](auto& p, std::size_t) -> auto& {
+        return *p.return_to;
+    };
+    rows.push_back(parameters::group<SpaceProblem>(
+                       key_of_return, "where the flight must end and stay after the last target",
+                       [](const SpaceProblem& p, std::size_t) {
+                           return p.return_to && std::holds_alternative<SpaceConfigurationGoal>(p.return_to->kind);
+                       },
+                       [](SpaceProblem& p, std::size_t, bool is_there) {
+                           p.return_to.reset();
+                           if (is_there) {
+                               p.return_to.emplace();
+                           }
+                       })
+                       .only(with_targets, has_targets));
+    for (const Row& row : configuration_rows()) {
+        rows.push_back(parameters::nested<SpaceProblem>(row, "goal.return_to.", return_to));
+    }
+    rows.push_back(hold(std::string(key_of_return), return_to));
+    rows.push_back(parameters::number<SpaceProblem>(
+                       "goal.energy_budget_j",
+                       "energy that no flight may exceed: targets for which it is not enough are left out",
+                       [](auto& p, std::size_t) -> auto& { return p.energy_budget_j; })
+                       .above(0)
+                       .at_most(1e12)
+                       .only(with_targets, has_targets));
+}
+
 }  // namespace
 
 void add_space_goal_rows(ProblemRows& rows) {
@@ -212,6 +257,8 @@ void add_space_goal_rows(ProblemRows& rows) {
     group.resize = [](SpaceProblem& p, std::size_t, std::size_t count) {
         p.goals.assign(count, {});
         p.in_any_order = false;
+        p.return_to.reset();
+        p.energy_budget_j.reset();
     };
     rows.push_back(std::move(group));
 
@@ -237,6 +284,7 @@ void add_space_goal_rows(ProblemRows& rows) {
     const auto has_no_choice = [goal](const SpaceProblem& p, std::size_t i) { return goal(p, i).any_of.empty(); };
     add_goal(rows, "goal.in_any_order[]", goal);
     rows.push_back(hold("goal.in_any_order[]", goal).only("without any_of", has_no_choice));
+    add_mission(rows);
     rows.push_back(hold("goal", goal)
                        .only("without any_of and in_any_order", [has_no_choice](const SpaceProblem& p, std::size_t i) {
                            return !p.in_any_order && has_no_choice(p, i);
@@ -266,6 +314,9 @@ void for_each_goal(const SpaceProblem& problem,
         for (std::size_t k = 0; k < goal.any_of.size(); ++k) {
             visit_kind(goal.any_of[k], indexed(key + ".any_of", k));
         }
+    }
+    if (problem.return_to) {
+        visit(*problem.return_to, std::string(key_of_return));
     }
 }
 

@@ -55,11 +55,22 @@ struct SpaceProblem {
     AeroSettings aero;
     std::optional<Uncertainty> uncertainty;  ///< empty: everything is nominal
     SpaceStart start;
-    std::vector<SpaceGoal> goals;  ///< to be reached and held one after the other, one at least
-    bool in_any_order = false;     ///< whether the planner chooses the order of the goals
-    SpaceMotionSettings motion;    ///< one limit for all joints
+    std::vector<SpaceGoal> goals;           ///< to be reached and held one after the other, one at least
+    bool in_any_order = false;              ///< whether they are targets, whose order the planner chooses
+    std::optional<SpaceGoal> return_to;     ///< a configuration to be reached and held after the targets
+    std::optional<double> energy_budget_j;  ///< no flight may take more, > 0; targets beyond it are left out
+    SpaceMotionSettings motion;             ///< one limit for all joints
     PlannerSettings planner;
 };
+
+/// All goals in their order; targets in any order come as they stand in the file, then the place to return to.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<SpaceGoal> goals_of(const SpaceProblem& problem);
+
+/// Whether a plan may visit goals_of(problem) in another order: with a place to return to, which is the last, the order
+/// has to be told (in_order()).
+[[nodiscard]] inline bool leaves_order_open(const SpaceProblem& problem) noexcept {
+    return problem.in_any_order && !problem.return_to;
+}
 
 /// Every reason why a problem in space cannot be flown: numbers out of range, a robot that cannot fly, a start outside
 /// the flyable area, a goal that says nothing. Keys are key paths of a problem file. Empty when it is sound.

@@ -317,13 +317,32 @@ Errors unclear(const SpaceContactGoal& goal, const SpaceProblem& p, double reach
                                 (names.empty() ? "the name of an obstacle, and none has one" : joined_names(names))}};
 }
 
-Errors missing_goals(const SpaceProblem& p) {
+Errors goal_count(const SpaceProblem& p) {
     if (p.goals.empty()) {
         return {{"goal", "is empty: expected one goal at least"}};
     }
-    if (p.goals.size() > max_goals) {
-        return {{"goal",
-                 "has " + std::to_string(p.goals.size()) + " goals: expected at most " + std::to_string(max_goals)}};
+    Errors errors;
+    const auto check = [&errors](const std::string& key, std::size_t count, std::size_t most) {
+        if (count > most) {
+            errors.push_back(
+                {key, "has " + std::to_string(count) + " goals: expected at most " + std::to_string(most)});
+        }
+    };
+    const std::string list = p.in_any_order ? "goal.in_any_order" : "goal";
+    check(list, p.goals.size(), p.in_any_order ? max_targets : max_goals);
+    for (std::size_t i = 0; i < p.goals.size(); ++i) {
+        const bool is_only = !p.in_any_order && p.goals.size() == 1;
+        check(list + (is_only ? "" : "[" + std::to_string(i) + "]") + ".any_of", p.goals[i].any_of.size(), max_goals);
+    }
+    return errors;
+}
+
+Errors unclear_mission(const SpaceProblem& p) {
+    if (!p.in_any_order && (p.return_to || p.energy_budget_j)) {
+        return {{"goal", "has a place to return to or an energy budget, and no targets in any order"}};
+    }
+    if (p.return_to && !std::holds_alternative<SpaceConfigurationGoal>(p.return_to->kind)) {
+        return {{"goal.return_to", "is no configuration: expected one"}};
     }
     return {};
 }
@@ -358,7 +377,7 @@ Errors touches_that_settle_late(const SpaceProblem& p) {
                                      " s; raise the gains of the position"}};
 }
 
-const std::array<Check<SpaceProblem>, 15> checks{{
+const std::array<Check<SpaceProblem>, 16> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names<SpaceProblem>},
     {{"environment.obstacles"}, shapeless_cylinders<SpaceProblem>},
@@ -372,7 +391,8 @@ const std::array<Check<SpaceProblem>, 15> checks{{
     {{"environment.obstacles", "start", "robot.rotors", "aero"}, start_not_flyable},
     {{"uncertainty", "robot.uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
     {{"planner.objective"}, weightless_objective<SpaceProblem>},
-    {{"goal"}, missing_goals},
+    {{"goal"}, goal_count},
+    {{"goal"}, unclear_mission},
     {{"goal", "environment.bounds", "environment.obstacles", "robot.arm"}, unclear_goals},
     {{"goal", "robot.controller"}, touches_that_settle_late},
 }};
@@ -384,6 +404,14 @@ Errors further_space_problem_errors(const SpaceProblem& problem, WrongKeys wrong
     append(errors, further_space_robot_errors(problem.robot, wrong, "robot."));
     append(errors, run_checks(std::span<const Check<SpaceProblem>>(checks), problem, "", wrong));
     return errors;
+}
+
+std::vector<SpaceGoal> goals_of(const SpaceProblem& problem) {
+    std::vector<SpaceGoal> goals = problem.goals;
+    if (problem.return_to) {
+        goals.push_back(*problem.return_to);
+    }
+    return goals;
 }
 
 Errors space_problem_errors(const SpaceProblem& problem) {

@@ -41,7 +41,7 @@ SpaceProblemModel::SpaceProblemModel(SpaceProblem problem)
     : problem_(std::move(problem)),
       scene_(std::make_shared<const Scene>(problem_.obstacles)),
       checker_(scene_, shape_of(problem_.robot), problem_.planner.collision_checker),
-      goals_(problem_.robot, scene_, problem_.goals, problem_.in_any_order) {}
+      goals_(problem_.robot, scene_, goals_of(problem_), leaves_order_open(problem_)) {}
 
 SpaceFlight SpaceProblemModel::execute(const SpacePlan& plan, const SpaceExecutionSettings& settings) const {
     const SpaceRobot& robot = problem_.robot;
@@ -53,10 +53,11 @@ SpaceFlight SpaceProblemModel::execute(const SpacePlan& plan, const SpaceExecuti
     }
     flight.checker = &checker_;
     flight.world = settings.world.value_or(SpaceWorld{});
-    flight.settles = settings.world.has_value() && is_at_rest(problem_.start);
+    flight.settles = settings.world.has_value() && !settings.start && is_at_rest(problem_.start);
     flight.goals = settings.goals != nullptr ? settings.goals : &goals_;
     flight.is_over = settings.is_over;
-    return fly(robot, plan, start_motion(problem_.start), flight);
+    flight.energy_budget_j = problem_.energy_budget_j;
+    return fly(robot, plan, settings.start.value_or(start_motion(problem_.start)), flight);
 }
 
 }  // namespace downwash

@@ -21,9 +21,11 @@ namespace downwash {
 
 /// How to execute a plan of a problem in space.
 struct SpaceExecutionSettings {
-    bool aero = true;                 ///< false: as if there were no surface effects, and no flyable area
-    std::optional<SpaceWorld> world;  ///< empty: the nominal one. In a world a vehicle that starts at rest has hovered
+    bool aero = true;  ///< false: as if there were no surface effects, and no flyable area
+    /// Empty: the nominal one. In a world a vehicle that begins at rest at the problem's start has hovered there.
+    std::optional<SpaceWorld> world;
     const SpaceGoalRule* goals = nullptr;  ///< in place of the problem's; nullptr: those
+    std::optional<SpaceMotion> start;      ///< in place of the problem's, the controller at rest; empty: that
     StopCondition is_over;
 };
 
@@ -40,7 +42,7 @@ class DOWNWASH_EXPORT SpaceProblemModel {
     [[nodiscard]] const SpaceChecker& collisions() const noexcept { return checker_; }
 
     /// Flies a plan from the start of the problem to the end of the hover for its last goal, with surface effects
-    /// evaluated directly.
+    /// evaluated directly. A flight that takes more than the problem's energy budget ends over_budget.
     /// @throws InputError if a model of surface effects cannot act in space, or the robot has more joints than this
     /// library was built for; WorkStopped when `is_over` says so
     /// @pre the plan has at least one knot, the robot's number of joints and its tick

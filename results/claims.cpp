@@ -84,6 +84,7 @@ SpaceClaims read_claims(const std::string& path, const SpaceProblem& problem) {
         claims.plan = std::move(text.plan);
         claims.waypoints = std::move(text.waypoints);
         claims.has_waypoints = text.waypoints_node.has_value();
+        claims.order = problems::read_order(reader, root, problem);
         read_flight(reader, root, claims.flight);
         if (const auto node = reader.optional_group(root, "execution")) {
             const auto cost = JsonReader::member(*node, "cost");

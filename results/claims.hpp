@@ -49,6 +49,7 @@ struct SpaceClaims {
     CostFunction objective;
     std::uint64_t seed = 1;
     SpacePlan plan;
+    std::optional<VisitOrder> order;    ///< as of Claims; also empty where the plan shows it
     std::vector<SpacePoint> waypoints;  ///< at rest
     bool has_waypoints = false;         ///< a plan written by hand need not have any
     std::optional<FlightClaims> flight;

@@ -280,6 +280,7 @@ SpaceRunRecord run_record(const SpaceProblem& problem, const SpaceSolution& solu
     run.status = name_of(solution.status);
     run.outcome = solution.execution ? name_of(solution.execution->outcome) : "";
     run.plan = solution.plan;
+    run.order = solution.plan ? solution.order : std::nullopt;
     run.flight = solution.execution ? trajectory_table(*solution.execution) : NumberTable();
     return run;
 }
@@ -306,7 +307,9 @@ SpaceRunRecord read_space_run(const fs::path& folder) {
     SpaceRunRecord run;
     const RunClaims claims = read_head(folder, run, [](const fs::path& file) { return read_space_problem(file); });
     if (claims.has_plan) {
-        run.plan = read_solution((folder / solution_name).string(), run.problem).plan;
+        SpaceSolution read = read_solution((folder / solution_name).string(), run.problem);
+        run.plan = std::move(read.plan);
+        run.order = std::move(read.order);
     }
     run.flight = read_flight(folder, flight_columns(run.problem.robot), claims);
     return run;

@@ -58,7 +58,8 @@ struct SpaceRunRecord {
     std::string status;         ///< as of RunRecord
     std::string outcome;        ///< as of RunRecord
     std::optional<SpacePlan> plan;
-    NumberTable flight;  ///< trajectory.csv
+    std::optional<VisitOrder> order;  ///< as of RunRecord; also empty where the plan shows it
+    NumberTable flight;               ///< trajectory.csv
 };
 
 /// The record of a flight in space that has just ended; the texts stay empty.

@@ -70,6 +70,25 @@ inline Json certificate_json(const std::optional<Certificate>& certificate) {
             {"worst", std::move(worst)}};
 }
 
+/// Targets and alternatives by their numbers from 1.
+inline Json order_json(const VisitOrder& order) {
+    Json visits = Json::array();
+    for (const Visit& visit : order.visits) {
+        visits.push_back(
+            {{"target", visit.target + 1}, {"alternative", visit.alternative ? Json(*visit.alternative + 1) : Json()}});
+    }
+    Json left_out = Json::array();
+    for (const LeftOutTarget& each : order.left_out) {
+        left_out.push_back(
+            {{"target", each.target + 1}, {"reason", name_of(each.reason)}, {"energy_j", json_number(each.energy_j)}});
+    }
+    return {{"visits", std::move(visits)},
+            {"left_out", std::move(left_out)},
+            {"is_best", order.is_best},
+            {"legs", order.legs},
+            {"cost_of_legs", json_number(order.cost_of_legs)}};
+}
+
 template <class Family>
 Json planning_json(const FoundOf<Family>& found, const SearchRecord& record, std::span<const Axis> axes) {
     Json improvements = Json::array();

@@ -10,25 +10,6 @@
 namespace downwash {
 namespace {
 
-/// Targets and alternatives by their numbers from 1.
-Json order_json(const VisitOrder& order) {
-    Json visits = Json::array();
-    for (const Visit& visit : order.visits) {
-        visits.push_back(
-            {{"target", visit.target + 1}, {"alternative", visit.alternative ? Json(*visit.alternative + 1) : Json()}});
-    }
-    Json left_out = Json::array();
-    for (const LeftOutTarget& each : order.left_out) {
-        left_out.push_back(
-            {{"target", each.target + 1}, {"reason", name_of(each.reason)}, {"energy_j", json_number(each.energy_j)}});
-    }
-    return {{"visits", std::move(visits)},
-            {"left_out", std::move(left_out)},
-            {"is_best", order.is_best},
-            {"legs", order.legs},
-            {"cost_of_legs", json_number(order.cost_of_legs)}};
-}
-
 Json knot_json(const ReferenceKnot& knot, const Plan& plan) {
     Json json = {{"t_s", static_cast<double>(knot.tick) * plan.tick_s}};
     const auto add = [&](std::string_view Axis::*name, const double(&numbers)[max_axes]) {

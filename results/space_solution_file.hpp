@@ -13,6 +13,7 @@
 #include "downwash/problems/input_facts.hpp"
 #include "downwash/problems/located_error.hpp"
 #include "downwash/problems/space_problem.hpp"
+#include "downwash/problems/visit_order.hpp"
 #include "downwash/results/solution_file.hpp"
 #include "downwash/simulation/space_flight.hpp"
 
@@ -34,6 +35,7 @@ struct SpaceSolution {
     std::optional<SpacePlan> plan;
     std::optional<SpaceFlight> execution;           ///< the whole plan flown from the start of the problem
     bool aero = true;                               ///< whether surfaces acted on the rotors in that flight
+    std::optional<VisitOrder> order;                ///< of the targets of a problem; empty: none, or the plan shows it
     std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one
 };
 

@@ -8,6 +8,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/controllers/space_axes.hpp"
 #include "downwash/controllers/space_limits.hpp"
+#include "downwash/results/order_reader.hpp"
 #include "downwash/results/plan_reader.hpp"
 #include "downwash/results/solution_document.hpp"
 #include "downwash/results/space_solution_file.hpp"
@@ -178,6 +179,7 @@ SpaceSolution read_solution(const std::string& path, const SpaceProblem& problem
             warn_of_reference(reader, *text.reference_node, text.plan, problem);
         }
         solution.plan = std::move(text.plan);
+        solution.order = problems::read_order(reader, root, problem);
     };
     problems::read_document(path, read, on_warning);
     return solution;

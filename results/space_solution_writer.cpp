@@ -101,7 +101,7 @@ std::string solution_json(const SpaceSolution& solution, const SpaceProblemRefer
                           const FileDigests& files) {
     const SpaceSearchResult* const search = solution.search.get();
     const std::span<const Axis> axes = axes_in_space(solution.joints);
-    const Json document = {
+    Json document = {
         {"schema", solution_schema},
         {"status", name_of(solution.status)},
         {"interrupted", solution.interrupted},
@@ -122,6 +122,9 @@ std::string solution_json(const SpaceSolution& solution, const SpaceProblemRefer
         {"execution", execution_json(solution)},
         {"files", files},
     };
+    if (solution.order) {
+        document["order"] = order_json(*solution.order);
+    }
     // A file name may be any bytes; what is no UTF-8 in it is replaced.
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "downwash/cli/execute_arguments.hpp"
 #include "downwash/cli/in_space.hpp"
 #include "downwash/cli/interruption.hpp"
+#include "downwash/cli/order_rows.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/plan_origin.hpp"
 #include "downwash/cli/results.hpp"
@@ -33,18 +35,19 @@ SpaceProblem as_planned(SpaceProblem problem, const SpaceSolution& solution) {
     return problem;
 }
 
-std::string goal_rows(const SpaceFlight& flight) {
+std::string goal_rows(const SpaceFlight& flight, const std::optional<VisitOrder>& order) {
     std::string text;
-    const auto met = std::ranges::count_if(flight.goals, &SpaceGoalVisit::is_met);
-    if (flight.goals.size() > 1) {
-        text += table_row("goals", fmt::format("{} of {} met", met, flight.goals.size()));
+    if (flight.goals.size() > 1 || (order && !order->left_out.empty())) {
+        std::vector<bool> met;
+        std::ranges::transform(flight.goals, std::back_inserter(met), &SpaceGoalVisit::is_met);
+        text += table_row("goals", met_goals_text(order, met));
     }
     for (std::size_t i = 0; i < flight.goals.size(); ++i) {
         const SpaceGoalVisit& visit = flight.goals[i];
         if (!visit.is_met) {
-            text += table_row(
-                "", fmt::format("goal {} missed: error {}, {:.1f} deg{}", i + 1, millimetres(visit.error_m),
-                                visit.angle_rad * degrees_per_radian, visit.is_hidden ? ", the target is hidden" : ""));
+            text += table_row("", fmt::format("{} missed: error {}, {:.1f} deg{}", goal_name(order, i + 1),
+                                              millimetres(visit.error_m), visit.angle_rad * degrees_per_radian,
+                                              visit.is_hidden ? ", the target is hidden" : ""));
         }
         if (visit.touch) {
             text += table_row(i == 0 ? "contact" : "",
@@ -78,7 +81,7 @@ std::string space_summary(const std::string& verdict, const SpaceSolution& solut
     text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
     text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
     text += table_row("goal error", millimetres(worst_goal_error_m(flight)));
-    text += goal_rows(flight);
+    text += goal_rows(flight, solution.order);
     text += table_row("tracking error", millimetres(flight.max_tracking_error_m));
     text += table_row("saturation", fmt::format("{:.3f}", flight.max_saturation));
     text += table_row("min. clearance",
@@ -108,7 +111,7 @@ ExitCode execute_in_space(const ExecuteArguments& given) {
               "this plan was made for another problem, or for another version of it: the status is that of this "
               "flight"});
     }
-    const SpaceProblemModel model(problem);
+    const SpaceProblemModel model(in_order(problem, solution.order));
     solution.aero = given.aero == "on";
     SpaceExecutionSettings settings;
     settings.aero = solution.aero;

@@ -11,6 +11,7 @@
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/cli/order_rows.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/run_folder.hpp"
 #include "downwash/problems/cut_off_goals.hpp"
@@ -44,18 +45,9 @@ std::string error_text(const Goal& goal, const GoalVisit& visit) {
                         : fmt::format(", allowed {:g} m in x, {:g} m in z", tolerance.x_m, tolerance.z_m));
 }
 
-/// What a goal is called, of those of a solution by its number from 1.
-std::string goal_name(const Solution& solution, std::size_t number) {
-    if (!solution.order) {
-        return fmt::format("goal {}", number);
-    }
-    const std::vector<Visit>& visits = solution.order->visits;
-    return number <= visits.size() ? fmt::format("target {}", visits[number - 1].target + 1) : "the place to return to";
-}
-
 /// The goal that the search did not get to.
 std::string missed_goal(const Solution& solution) {
-    return solution.missed_goal ? goal_name(solution, *solution.missed_goal) : "the goal";
+    return solution.missed_goal ? goal_name(solution.order, *solution.missed_goal) : "the goal";
 }
 
 std::string missed_region(const Solution& solution) {
@@ -65,46 +57,6 @@ std::string missed_region(const Solution& solution) {
 /// Whether what a solution says of worlds is of the way to a goal before the last.
 bool is_about_part(const Solution& solution) {
     return solution.missed_goal && solution.execution && *solution.missed_goal < solution.execution->goals.size();
-}
-
-std::string order_rows(const VisitOrder& order, bool has_plan, const std::optional<double>& energy_budget_j) {
-    std::string visits;
-    for (const Visit& visit : order.visits) {
-        visits += (visits.empty() ? "" : ", ") + std::to_string(visit.target + 1);
-        visits += visit.alternative ? fmt::format(" (alternative {})", *visit.alternative + 1) : "";
-    }
-    std::string text = table_row("order", visits.empty() ? "none: no target is visited" : "targets " + visits);
-    if (!visits.empty()) {
-        text +=
-            table_row("", !has_plan ? "no plan in that order was found"
-                          : order.is_best
-                              ? fmt::format("the cheapest by {} flown legs and lower bounds of the others", order.legs)
-                              : fmt::format("the cheapest that was found by {} flown legs", order.legs));
-    }
-    for (const LeftOutTarget& each : order.left_out) {
-        std::string why = "no flight to it was found";
-        if (each.energy_j) {
-            why = fmt::format("with it the flight takes about {:.6g} J of {:.6g} J", *each.energy_j,
-                              energy_budget_j.value_or(0));
-        }
-        text += table_row(&each == &order.left_out.front() ? "left out" : "",
-                          fmt::format("target {}: {}", each.target + 1, why));
-    }
-    return text;
-}
-
-/// Which goals a flight meets: of all, or of all targets and the place to return to.
-std::string met_goals(const Solution& solution, const Execution& flight) {
-    const std::vector<GoalVisit>& goals = flight.goals;
-    const std::size_t flown = solution.order ? std::min(solution.order->visits.size(), goals.size()) : goals.size();
-    const auto end = goals.begin() + static_cast<std::ptrdiff_t>(flown);
-    const auto met = std::count_if(goals.begin(), end, [](const GoalVisit& visit) { return visit.is_met; });
-    if (!solution.order) {
-        return fmt::format("{} of {} met", met, goals.size());
-    }
-    const std::size_t targets = solution.order->visits.size() + solution.order->left_out.size();
-    const char* way_back = end == goals.end() ? "" : end->is_met ? ", and the return" : ", but not the return";
-    return fmt::format("{} of {} targets met{}", met, targets, way_back);
 }
 
 /// Where a plan takes over from another one, and how the two join.
@@ -153,10 +105,15 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
                 : "none: the surface was not found");
     }
     if (flight.goals.size() > 1 || (solution.order && !solution.order->left_out.empty())) {
-        text += table_row("goals", met_goals(solution, flight));
+        std::vector<bool> met;
+        for (const GoalVisit& visit : flight.goals) {
+            met.push_back(visit.is_met);
+        }
+        text += table_row("goals", met_goals_text(solution.order, met));
         for (std::size_t i = 0; i < flight.goals.size(); ++i) {
             if (!flight.goals[i].is_met) {
-                text += table_row("", goal_name(solution, i + 1) + " missed: " + error_text(goals[i], flight.goals[i]));
+                text += table_row(
+                    "", goal_name(solution.order, i + 1) + " missed: " + error_text(goals[i], flight.goals[i]));
             }
         }
     }
@@ -321,18 +278,14 @@ std::string verdict_on_search(const Solution& solution) {
     }
     if (solution.order && !solution.order->left_out.empty() && solution.execution &&
         solution.execution->outcome == Outcome::ok) {
-        return stopped + fmt::format("{} of {} targets are visited; to the others no flight was found.",
-                                     solution.order->visits.size(),
-                                     solution.order->visits.size() + solution.order->left_out.size());
+        return stopped + left_out_text(*solution.order);
     }
     if (solution.status == Status::approximate) {
         const auto& off_m = solution.nearest_approach_m;
         return stopped + "No solution within the limits; the nearest approach to " + missed_goal(solution) +
                (off_m ? fmt::format(", {:.3f} m from its region,", *off_m) : "") + " is reported.";
     }
-    const auto is_for_energy = [](const LeftOutTarget& each) { return each.reason == LeftOutReason::energy_budget; };
-    if (solution.order && solution.order->visits.empty() &&
-        std::ranges::all_of(solution.order->left_out, is_for_energy)) {
+    if (lacks_energy_for_all(solution.order)) {
         return stopped + "No solution: the energy budget is not enough for any target.";
     }
     return stopped + "No solution within the limits.";

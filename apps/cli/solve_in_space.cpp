@@ -7,6 +7,7 @@
 #include "downwash/cli/common_options.hpp"
 #include "downwash/cli/in_space.hpp"
 #include "downwash/cli/interruption.hpp"
+#include "downwash/cli/order_rows.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/results.hpp"
@@ -31,7 +32,7 @@ std::string announcement(const SpaceProblem& problem) {
 std::string obstruction_text(const SpaceSearchResult& search) {
     std::string text = search.plan ? "The plan does not reach the goal" : "There is no plan";
     if (search.missed_goal) {
-        text += fmt::format(" (goal {})", *search.missed_goal);
+        text += " (" + goal_name(search.order, *search.missed_goal) + ")";
     }
     if (const auto& obstruction = search.obstruction) {
         text += fmt::format(": {}", obstruction->cause);
@@ -46,12 +47,22 @@ std::string verdict_on(const SpaceSearchResult& search, const SpaceSolution& sol
     if (search.status == Status::solved && solution.execution) {
         return verdict_on_outcome(solution.execution->outcome, solution.aero, "reaches the goal and hovers there.");
     }
+    if (lacks_energy_for_all(search.order)) {
+        return "No solution: the energy budget is not enough for any target.";
+    }
+    if (search.order && !search.order->left_out.empty() && solution.execution &&
+        solution.execution->outcome == Outcome::ok) {
+        return left_out_text(*search.order);
+    }
     return obstruction_text(search);
 }
 
-std::string rows_of(const SpaceSearchResult& search) {
+std::string rows_of(const SpaceProblem& problem, const SpaceSearchResult& search) {
     const SearchRecord& record = search.planning;
     std::string text;
+    if (search.order) {
+        text += order_rows(*search.order, search.plan.has_value(), problem.energy_budget_j);
+    }
     if (const auto& certificate = search.certificate) {
         text +=
             table_row("certificate", fmt::format("{}: {} of {} worlds fail, failure probability at most {:.4g}",
@@ -85,6 +96,7 @@ SpaceSolution solution_of(const SpaceProblem& problem, std::shared_ptr<const Spa
     solution.plan = search->plan;
     solution.execution = search->execution;
     solution.aero = problem.aero.enabled;
+    solution.order = search->order;
     solution.search = std::move(search);
     return solution;
 }
@@ -125,7 +137,7 @@ ExitCode solve_in_space(const SolveInSpace& given) {
     if (given.as_json) {
         fmt::print("{}", record.solution_text);
     } else {
-        fmt::print("{}{}", space_summary(verdict_on(*search, solution), solution, rows_of(*search)),
+        fmt::print("{}{}", space_summary(verdict_on(*search, solution), solution, rows_of(problem, *search)),
                    file_rows(folder.path(), "solution.json, trajectory.csv, tree.csv, effective.yaml"));
     }
     if (interruption.code() != ExitCode::done) {

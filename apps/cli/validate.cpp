@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string>
 
@@ -98,11 +100,7 @@ ExitCode validate(const ValidateArguments& given) {
     }
     validation.flight = judge.fly(claims.plan, conditions);
     validation.disagreements = judge::disagreements_in_plan(claims, flown);
-    if (claims.order && !problem.energy_budget_j && !claims.order->left_out.empty()) {
-        validation.disagreements.push_back({"order: targets visited without an energy budget",
-                                            static_cast<double>(claims.order->visits.size()),
-                                            static_cast<double>(problem.targets.size())});
-    }
+    std::ranges::move(disagreements_about_order(claims.order, problem), std::back_inserter(validation.disagreements));
     if (claims.flight) {
         validation.has_flight_claims = true;
         auto more = compare_flight(judge, claims, given.world ? nullptr : &validation.flight);

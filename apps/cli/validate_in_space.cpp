@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -82,13 +83,15 @@ ExitCode validate_in_space(const ValidateArguments& given) {
     const std::uint64_t seed = given.seed.value_or(claims.seed);
     const std::optional<OutputFolder> folder = given.out ? std::optional<OutputFolder>(*given.out) : std::nullopt;
 
-    const judge::SpacePlanJudge judge(problem);
+    const SpaceProblem flown = in_order(problem, claims.order);
+    const judge::SpacePlanJudge judge(flown);
     Validation validation;
     validation.world = given.world;
     const judge::SpaceJudgedFlight flight = judge.fly(claims.plan, true, world_of(problem, seed, given.world));
     validation.flight = figures_of(flight);
     validation.is_self_collision = flight.is_self_collision;
-    validation.disagreements = judge::disagreements_in_plan(claims, problem);
+    validation.disagreements = judge::disagreements_in_plan(claims, flown);
+    std::ranges::move(disagreements_about_order(claims.order, problem), std::back_inserter(validation.disagreements));
     if (claims.flight) {
         validation.has_flight_claims = true;
         auto more = compare_flight(judge, claims, given.world ? nullptr : &flight);

@@ -8,6 +8,7 @@
 #include "downwash/judge/disagreements.hpp"
 #include "downwash/judge/plan_judge.hpp"
 #include "downwash/judge/world_runs.hpp"
+#include "downwash/problems/visit_order.hpp"
 
 namespace downwash::cli {
 
@@ -24,6 +25,17 @@ struct Validation {
         return flight.outcome == judge::Outcome::ok && disagreements.empty();
     }
 };
+
+/// What is wrong with the order that a plan claims: without an energy budget there is no reason to leave out targets.
+template <class AnyProblem>
+[[nodiscard]] std::vector<judge::Disagreement> disagreements_about_order(const std::optional<VisitOrder>& order,
+                                                                         const AnyProblem& problem) {
+    if (!order || problem.energy_budget_j || order->left_out.empty()) {
+        return {};
+    }
+    return {{"order: targets visited without an energy budget", static_cast<double>(order->visits.size()),
+             static_cast<double>(targets_of(problem).size())}};
+}
 
 /// For programs.
 [[nodiscard]] Json json_of(const Validation& validation);

@@ -30,7 +30,8 @@ SpaceRun shown_run(const SpaceRunRecord& record) {
             record.problem_text,
             {},
             command_of_execution(solution),
-            solution.value("warnings", Json::array()).dump()};
+            solution.value("warnings", Json::array()).dump(),
+            record.order};
 }
 
 std::string space_page_data(const SpaceProblem& problem, const SpaceRun& run) {
@@ -45,7 +46,7 @@ std::string space_page_data(const SpaceProblem& problem, const SpaceRun& run) {
               {"findings", parsed_or_null(run.findings)},
               {"effective_yaml", run.problem_text},
               {"flight", flight_json(run.flight)}};
-    add_space_problem(page, problem);
+    add_space_problem(page, problem, run.order);
     return page_data(page);
 }
 

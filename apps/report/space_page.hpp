@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "downwash/base/export.hpp"
 #include "downwash/problems/space_problem.hpp"
+#include "downwash/problems/visit_order.hpp"
 #include "downwash/results/run_record.hpp"
 
 namespace downwash {
@@ -13,11 +15,12 @@ struct SpaceRun {
     /// One row per control tick with the columns of trajectory.csv in space, from t_s on; a clearance without obstacles
     /// is NaN. No rows: nothing was flown.
     NumberTable flight = {};
-    std::string solution_text = {};  ///< solution.json; empty: the problem is not planned
-    std::string problem_text = {};   ///< effective.yaml; empty: the page does not show it
-    std::string findings = {};       ///< JSON that `validate --json` prints; empty: nothing was judged
-    std::string command = {};        ///< that makes the files again; empty: none
-    std::string warnings = {};       ///< JSON list of what reading the problem warned of, as in solution.json
+    std::string solution_text = {};        ///< solution.json; empty: the problem is not planned
+    std::string problem_text = {};         ///< effective.yaml; empty: the page does not show it
+    std::string findings = {};             ///< JSON that `validate --json` prints; empty: nothing was judged
+    std::string command = {};              ///< that makes the files again; empty: none
+    std::string warnings = {};             ///< JSON list of what reading the problem warned of, as in solution.json
+    std::optional<VisitOrder> order = {};  ///< of the targets; empty: none, or the plan shows it
 };
 
 /// A run in space as its page shows it: with its warnings, and the command that makes its files again.

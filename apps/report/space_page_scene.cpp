@@ -152,24 +152,40 @@ struct GoalText {
     }
 };
 
-Json goals_json(const SpaceProblem& problem) {
+/// Those that are visited, in their order and by number, then those that are left out, without one.
+Json goals_json(const SpaceProblem& problem, const std::optional<VisitOrder>& order) {
+    const std::vector<std::string> names = goal_names(problem, order);
+    const SpaceProblem flown = in_order(problem, order);
+    const std::vector<SpaceGoal> visited = goals_of(flown);
     Json goals = Json::array();
-    for (std::size_t i = 0; i < problem.goals.size(); ++i) {
-        const SpaceGoal& goal = problem.goals[i];
-        const std::string name = problem.goals.size() > 1 ? "goal " + std::to_string(i + 1) : "goal";
-        const auto add = [&](const SpaceGoalKind& kind, const std::string& called) {
-            Json json{{"name", called}, {"number", i + 1}, {"hold_s", goal.hold_s}};
+    const auto add = [&](const SpaceGoal& goal, const std::string& name, std::size_t number) {
+        const auto add_kind = [&](const SpaceGoalKind& kind, const std::string& called) {
+            Json json{{"name", called}, {"number", number}, {"hold_s", goal.hold_s}};
             json.update(std::visit(GoalText(), kind));
             goals.push_back(std::move(json));
         };
         if (goal.any_of.empty()) {
-            add(goal.kind, name);
+            add_kind(goal.kind, name);
         }
         for (std::size_t k = 0; k < goal.any_of.size(); ++k) {
-            add(goal.any_of[k].kind, name + ", alternative " + std::to_string(k + 1));
+            add_kind(goal.any_of[k].kind, name + ", alternative " + std::to_string(k + 1));
+        }
+    };
+    for (std::size_t i = 0; i < visited.size(); ++i) {
+        add(visited[i], names[i], i + 1);
+    }
+    if (order && !flown.in_any_order) {
+        for (const LeftOutTarget& each : order->left_out) {
+            add(problem.goals[each.target], "target " + std::to_string(each.target + 1) + ", left out", 0);
         }
     }
     return goals;
+}
+
+/// In which order goals are visited.
+std::string_view goal_order(const SpaceProblem& problem, const std::optional<VisitOrder>& order) {
+    const SpaceProblem flown = in_order(problem, order);
+    return flown.in_any_order ? "any_order" : flown.goals.size() == 1 ? "single" : "in_turn";
 }
 
 double max_tilt_rad(const SpaceController& controller) {
@@ -178,12 +194,12 @@ double max_tilt_rad(const SpaceController& controller) {
 
 }  // namespace
 
-void add_space_problem(Json& page, const SpaceProblem& problem) {
+void add_space_problem(Json& page, const SpaceProblem& problem, const std::optional<VisitOrder>& order) {
     page["scene"] = scene_json(problem);
     page["robot"] = robot_json(problem.robot);
     page["start"] = start_json(problem.start, problem.robot.joints());
-    page["goals"] = goals_json(problem);
-    page["goal_order"] = problem.goals.size() == 1 ? "single" : problem.in_any_order ? "any_order" : "in_turn";
+    page["goals"] = goals_json(problem, order);
+    page["goal_order"] = goal_order(problem, order);
     page["limits"] = {{"safety_margin_m", problem.planner.safety_margin_m},
                       {"max_tilt_rad", max_tilt_rad(problem.robot.controller)},
                       {"max_speed_m_s", problem.motion.max_speed_m_s}};

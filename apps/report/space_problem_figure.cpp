@@ -1,16 +1,16 @@
 #include "downwash/report/space_problem_figure.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
 #include <variant>
 
 #include "downwash/base/lane_math.hpp"
+#include "downwash/problems/visit_order.hpp"
 #include "downwash/report/figure_colors.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 #include "downwash/report/space_robot_drawing.hpp"
@@ -99,9 +99,11 @@ struct SeenGoals {
 
 SeenGoals seen_goals(const SpaceProblem& problem, const Matrix3& view, double arrow_m) {
     SeenGoals found;
-    std::size_t number = 0;
-    for (const SpaceGoal& goal : problem.goals) {
-        const std::string name = problem.goals.size() > 1 ? fmt::format("goal {}", ++number) : "goal";
+    const std::vector<SpaceGoal> goals = goals_of(problem);
+    const std::vector<std::string> names = goal_names(problem, std::nullopt);
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+        const SpaceGoal& goal = goals[i];
+        const std::string& name = names[i];
         const auto add = [&](const SpaceGoalKind& kind) {
             const std::optional<Vector3> place_m = std::visit(PlaceOf(), kind);
             if (!place_m) {

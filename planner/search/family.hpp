@@ -52,6 +52,9 @@ struct DOWNWASH_EXPORT Plane {
     using Execution = downwash::Execution;  ///< with direct aerodynamics
     using ProblemWorlds = planning::ProblemWorlds;
     using StopFinder = planning::StopFinder;
+    /// Whether a path to a goal before the last is executed without what comes before it, from where the planner's own
+    /// model has the vehicle then.
+    static constexpr bool executes_parts_alone = false;
 };
 
 /// A world in space, and the control tick with which a flight in it begins.
@@ -86,6 +89,7 @@ struct DOWNWASH_EXPORT Space {
     using Execution = SpaceFlight;
     using ProblemWorlds = SpaceProblemWorlds;
     using StopFinder = NoStopFinder;
+    static constexpr bool executes_parts_alone = true;  ///< direct flights in space take long
 };
 
 /// What limits the references of a problem.

@@ -44,6 +44,34 @@ std::vector<SearchAxis> search_axes(const SpaceProblem& problem, double reach_m)
     return axes;
 }
 
+/// How far the end effector gets from the multirotor's centre of mass at most [m].
+double tool_reach_m(const SpaceRobot& robot) {
+    const auto length_m = [](const Vector3& v) { return std::sqrt(dot(v, v)); };
+    double reach_m = length_m(robot.plant.end_effector_m);
+    for (const auto& link : robot.plant.links) {
+        reach_m += length_m(link.joint_m);
+    }
+    return reach_m;
+}
+
+/// A ball in which a goal wants the end effector; empty if it does not say.
+struct WantedBall {
+    Vector3 center_m;
+    double radius_m;
+};
+std::optional<WantedBall> wanted_ball(const SpaceGoalKind& kind) {
+    if (const auto* tool = std::get_if<SpaceEndEffectorGoal>(&kind)) {
+        return WantedBall{tool->position_m, tool->tolerance_m};
+    }
+    if (const auto* pose = std::get_if<SpacePoseGoal>(&kind)) {
+        return WantedBall{pose->position_m, pose->tolerance_m};
+    }
+    if (const auto* camera = std::get_if<SpaceCameraGoal>(&kind)) {
+        return WantedBall{camera->target_m, camera->farthest_m};
+    }
+    return std::nullopt;
+}
+
 std::span<const SpaceGoal> alternatives(const SpaceGoal& goal) noexcept {
     return goal.any_of.empty() ? std::span(&goal, 1) : std::span(goal.any_of);
 }
@@ -74,7 +102,8 @@ SpaceSearchSpace::SpaceSearchSpace(const SpaceProblem& problem, const SpaceProbl
       limits_(motion_limits_of(problem)),
       start_(place_of(problem.start)),
       margin_m_(problem.planner.safety_margin_m),
-      reach_m_(model.collisions().robot_reach_m()) {}
+      reach_m_(model.collisions().robot_reach_m()),
+      tool_reach_m_(tool_reach_m(problem.robot)) {}
 
 double SpaceSearchSpace::duration_s(const Configuration& from, const Configuration& to) const noexcept {
     double along[space_axes<max_joints>] = {};
@@ -196,14 +225,15 @@ std::vector<SpaceSearchSpace::Approach> SpaceSearchSpace::approaches(const Confi
             all.push_back({way_m, longest_s, goal.hold_s});
             continue;
         }
-        double tolerance_m = 0;
-        if (const auto* tool = std::get_if<SpaceEndEffectorGoal>(&goal.kind)) {
-            tolerance_m = tool->tolerance_m;
-        } else if (const auto* pose = std::get_if<SpacePoseGoal>(&goal.kind)) {
-            tolerance_m = pose->tolerance_m;
+        const std::optional<WantedBall> ball = wanted_ball(goal.kind);
+        const bool is_camera = std::holds_alternative<SpaceCameraGoal>(goal.kind);  // its error is beyond its distances
+        const double tool_way_m = std::max(0.0, off.distance_m - (ball && !is_camera ? ball->radius_m : 0));
+        double way_m = 0;
+        if (ball) {
+            const Vector3 to_m = ball->center_m - Vector3{from[0], from[1], from[2]};
+            way_m = std::max(0.0, std::sqrt(dot(to_m, to_m)) - ball->radius_m - tool_reach_m_);
         }
-        const double way_m = std::max(0.0, off.distance_m - tolerance_m);
-        all.push_back({std::max(0.0, way_m - 2 * reach_m_), way_m / tool_speed_m_s, goal.hold_s});
+        all.push_back({way_m, std::max(tool_way_m / tool_speed_m_s, way_m / limits_.max_speed_m_s), goal.hold_s});
     }
     return all;
 }

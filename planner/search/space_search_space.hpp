@@ -104,7 +104,8 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
     SpaceMotionLimits limits_;
     Configuration start_;
     double margin_m_;
-    double reach_m_;  ///< of the robot, from its multirotor's centre of mass
+    double reach_m_;       ///< of the robot, from its multirotor's centre of mass
+    double tool_reach_m_;  ///< of its end effector at most, from there
 };
 
 }  // namespace downwash::planning

@@ -117,10 +117,10 @@ def tool_at(position, direction, direction_tolerance_deg=15):
     return goal("end_effector", values | {"direction_tolerance_deg": direction_tolerance_deg})
 
 
-def view_of(target, nearest, farthest, direction, cone_deg):
+def view_of(target, nearest, farthest, direction, cone_deg, hold_s=5):
     """The goal of a camera."""
     values = {"target_m": target, "distance_m": (nearest, farthest), "direction": direction}
-    return goal("camera", values | {"view_cone_deg": cone_deg})
+    return goal("camera", values | {"view_cone_deg": cone_deg}, hold_s)
 
 
 def one(lines):
@@ -135,3 +135,9 @@ def listed(goals, indent="  "):
         out.append(f"{indent}- {lines[0]}")
         out += [f"{indent}  {line}" for line in lines[1:]]
     return out
+
+
+def mission(targets, start, energy_budget):
+    """Targets in any order, then back to the start. @param energy_budget of the battery in joules"""
+    back = fields(start | {"hold_s": 5})
+    return ["  in_any_order:", *listed(targets, "    "), f"  return_to: {back}", f"  energy_budget_j: {energy_budget}"]

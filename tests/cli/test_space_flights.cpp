@@ -76,6 +76,38 @@ TEST_CASE("A reference in space is executed, validated and executed again") {
     check_rejected(work.run("execute", girder, "--plan one --margin 0.1"), "--margin is a setting of searches");
 }
 
+TEST_CASE("Targets in space are solved in any order, executed and validated in the order that was found") {
+    const Workspace work;
+    write_file(work.in_run("mission.yaml"), "schema: downwash/problem/v1\nname: mission\nrobot: " DOWNWASH_PROBLEMS
+                                            "/robots/hexa960_arm2.yaml\n"
+                                            "environment: {bounds: {x_m: [-4, 4], y_m: [-2, 2], z_m: [1, 5]}}\n"
+                                            "aero: none\n"
+                                            "start: {x_m: -3, y_m: 0, z_m: 2, joints_deg: [-90, 150]}\n"
+                                            "goal:\n  in_any_order:\n"
+                                            "    - {configuration: {x_m: 2, z_m: 3}, hold_s: 1}\n"
+                                            "    - {configuration: {x_m: 0, z_m: 3}, hold_s: 1}\n"
+                                            "  return_to: {x_m: -3, z_m: 2, hold_s: 1}\n"
+                                            "  energy_budget_j: 100000\n"
+                                            "planner: {variant: mp-arm-da, max_iterations: 200}\n");
+    const Result solved = work.succeed("solve mission.yaml --out run");
+    CHECK_THAT(solved.out, Contains("targets ") && Contains("2 of 2 targets met, and the return"));
+    const Json order = Json::parse(work.text("run/solution.json")).at("order");
+    REQUIRE(order.at("visits").size() == 2);
+    CHECK(order.at("left_out").empty());
+    const Result flown = work.succeed("execute mission.yaml --plan run --out flown");
+    CHECK_THAT(flown.out, Contains("2 of 2 targets met, and the return"));
+    CHECK(work.text("flown/trajectory.csv") == work.text("run/trajectory.csv"));
+    CHECK(Json::parse(work.text("flown/solution.json")).at("order") == order);
+    CHECK_THAT(work.succeed("validate mission.yaml --plan run").out, Catch::StartsWith("Valid. "));
+    // In another order, the same hovers are not those of the goals.
+    Json turned = Json::parse(work.text("run/solution.json"));
+    std::swap(turned["order"]["visits"][0], turned["order"]["visits"][1]);
+    turned.erase("files");
+    write_file(work.in_run("turned.json"), turned.dump());
+    CHECK(work.run("execute mission.yaml --plan turned.json --out turned").code == 3);
+    CHECK_THAT(work.run("validate mission.yaml --plan turned.json").out, Catch::StartsWith("Not valid. "));
+}
+
 TEST_CASE("References in space whose flights fail end with 3") {
     const Workspace work;
     const auto outcome_of = [&work](const std::string& text) {

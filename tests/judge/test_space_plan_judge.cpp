@@ -95,6 +95,24 @@ TEST_CASE("The judge finds the shipped plan in space sound, and its flight as ou
     CHECK(named(judge::disagreements_about_flight(claims, judged)).size() == 2);
 }
 
+TEST_CASE("A flight in space that takes more energy than it may is over budget, for the judge and for us") {
+    SpaceProblem mission = problem();
+    mission.in_any_order = true;
+    mission.energy_budget_j = 1e6;
+    const SpaceFlight flight = SpaceProblemModel(mission).execute(shipped().plan);
+    REQUIRE(flight.outcome == Outcome::ok);
+    mission.energy_budget_j = 0.99 * flight.energy_j;
+    CHECK(SpaceProblemModel(mission).execute(shipped().plan).outcome == Outcome::over_budget);
+    CHECK(judge::SpacePlanJudge(mission).fly(shipped().plan).outcome == judge::Outcome::over_budget);
+    // With a place to return to, the plan ends elsewhere.
+    mission.energy_budget_j.reset();
+    SpaceConfigurationGoal start;
+    start.x_m = mission.start.position_m[0];
+    mission.return_to = SpaceGoal{start, 2, {}};
+    CHECK(judge::SpacePlanJudge(mission).fly(shipped().plan).outcome == judge::Outcome::goal_missed);
+    CHECK(SpaceProblemModel(mission).execute(shipped().plan).outcome == Outcome::goal_missed);
+}
+
 TEST_CASE("The judge finds what is wrong with a plan in space") {
     SpaceClaims claims = shipped();
     claims.plan.reference[1].tick = 300;

@@ -1,3 +1,6 @@
+#include <catch2/catch.hpp>
+#include <string>
+
 #include "../support/test_files.hpp"
 #include "edits.hpp"
 #include "space_files.hpp"
@@ -172,6 +175,14 @@ const Edit goal_edits[] = {
      "13:15: goal.any_of[0].hold_s is 0: expected a number in s from 1 to 3600"},
     {single_goal, "  any_of: []\n", "11:11: goal.any_of is empty: expected one element at least"},
     {single_goal, "  in_any_order: []\n", "11:17: goal.in_any_order is empty: expected one element at least"},
+    {single_goal, "  in_any_order:\n    - configuration: {y_m: 0}\n  return_to: {x_m: 1, joints_deg: [1, 2, 3]}\n",
+     "13:32: goal.return_to.joints_deg has 3 numbers: expected 2, one for each joint of the arm, or no such key"},
+    {single_goal, "  in_any_order:\n    - configuration: {y_m: 0}\n  return_to: {hold_s: 2}\n",
+     "13:3: goal.return_to is free in every coordinate: expected at least one of x_m, y_m, z_m, yaw_deg or joints_deg"},
+    {single_goal, "  in_any_order:\n    - configuration: {y_m: 0}\n  energy_budget_j: 0\n",
+     "13:20: goal.energy_budget_j is 0: expected a number in J above 0 and at most 1000000000000"},
+    {single_goal, "  configuration: {y_m: 0}\n  return_to: {x_m: 1}\n",
+     "12:3: goal.return_to has a meaning only with in_any_order: remove it"},
     {single_goal, "  camera: {target_m: [3, 0, 2], distance_m: [1, 2]}\n  contact: {obstacle: pole, force_n: 5}\n",
      "12:3: goal has both camera and contact: expected exactly one of configuration, end_effector, pose, camera, "
      "contact, any_of or in_any_order"},
@@ -189,6 +200,23 @@ TEST_CASE("a malformed problem in space is an error at its key") {
     check(problem_edits, "problem.yaml", [](auto from, auto to) {
         return space_errors(TestFolder(), edited(good_space_problem, from, to), good_space_robot);
     });
+}
+
+TEST_CASE("more targets in space than fifty, and more goals than 64, are an error") {
+    const auto errors_with = [](const std::string& before, const std::string& each, int count) {
+        std::string goals = before;
+        for (int i = 0; i < count; ++i) {
+            goals += each;
+        }
+        return space_errors(TestFolder(), edited(good_space_problem, single_goal, goals), good_space_robot);
+    };
+    const std::string target = "    - configuration: {y_m: 0}\n";
+    CHECK(errors_with("  in_any_order:\n", target, 50) == "sound");
+    CHECK_THAT(errors_with("  in_any_order:\n", target, 51),
+               Catch::Contains("goal.in_any_order has 51 goals: expected at most 50"));
+    CHECK_THAT(errors_with("", target, 65), Catch::Contains("goal has 65 goals: expected at most 64"));
+    CHECK_THAT(errors_with("  any_of:\n", target, 65),
+               Catch::Contains("goal.any_of has 65 goals: expected at most 64"));
 }
 
 TEST_CASE("a malformed goal in space is an error at its key in a list, a choice or goals in any order") {

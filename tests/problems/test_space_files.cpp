@@ -87,11 +87,24 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
     for (const bool in_any_order : {false, true}) {
         problem.goals = {configuration, point, pose, camera, contact, choice};
         problem.in_any_order = in_any_order;
+        if (in_any_order) {
+            problem.return_to = SpaceGoal{SpaceConfigurationGoal{-0.1, {}, 2.0 / 3, 0.2, {}, 0.07, 0.04}, 3, {}};
+            problem.energy_budget_j = 1e5 / 3;
+        }
         problem.start.attitude = {1, 0, 0, 0.2};
         problem.motion.yaw.mode = YawMode::toward;
         problem.motion.yaw.target_m = {1, 1.0 / 3};
         const SpaceProblem again = read_again(folder, problem);
         CHECK(again.in_any_order == in_any_order);
+        CHECK(again.energy_budget_j == problem.energy_budget_j);
+        REQUIRE(again.return_to.has_value() == in_any_order);
+        if (in_any_order) {
+            const auto& place = std::get<SpaceConfigurationGoal>(again.return_to->kind);
+            CHECK(place.z_m == 2.0 / 3);
+            CHECK_FALSE(place.y_m);
+            CHECK(place.tolerance_m == 0.07);
+            CHECK(again.return_to->hold_s == 3);
+        }
         REQUIRE(again.goals.size() == 6);
         const auto& free = std::get<SpaceConfigurationGoal>(again.goals[0].kind);
         CHECK_FALSE(free.x_m.has_value());

@@ -109,7 +109,8 @@ TEST_CASE("every kind of goal in space stands on the page, alternatives by their
         names.push_back(goal.at("name"));
         kinds.push_back(goal.at("kind"));
     }
-    CHECK(names == std::vector<std::string>{"goal 1", "goal 2, alternative 1", "goal 2, alternative 2", "goal 3"});
+    CHECK(names ==
+          std::vector<std::string>{"target 1", "target 2, alternative 1", "target 2, alternative 2", "target 3"});
     CHECK(kinds == std::vector<std::string>{"configuration", "pose", "camera", "contact"});
     CHECK(page.at("goal_order") == "any_order");
     CHECK(goals.at(0).at("position_m").at(0) == 2);

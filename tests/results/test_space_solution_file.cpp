@@ -132,6 +132,35 @@ TEST_CASE("A solution in space reads back as it was written, to the last bit") {
     CHECK(claims.has_cost);
 }
 
+TEST_CASE("The order of targets in space is written and read back, and is one of the problem") {
+    const test::TestFolder folder;
+    SpaceProblem mission = problem();
+    SpaceGoal choice;
+    choice.any_of = {mission.goals.front(), mission.goals.front()};
+    mission.goals = {mission.goals.front(), choice, mission.goals.front()};
+    mission.in_any_order = true;
+    SpaceSolution written = sample();
+    written.order = VisitOrder{{{2, std::nullopt}, {1, 1}}, {{0, LeftOutReason::energy_budget, 1e5 / 3}}, true, 7, 8.5};
+    const auto read_with = [&](const SpaceProblem& of, const std::string& text) {
+        folder.write("solution.json", text);
+        return read_solution((folder / "solution.json").string(), of);
+    };
+    const std::string text = solution_json(written, {"girder", "girder.yaml", "abc"});
+    CHECK(read_with(mission, text).order == written.order);
+    CHECK(read_claims((folder / "solution.json").string(), mission).order == written.order);
+    CHECK(Json::parse(text).at("order").at("visits").at(1) == Json{{"target", 2}, {"alternative", 2}});
+    CHECK_THAT(folder.errors_in([&] { return read_with(problem(), text); }),
+               Contains("order: the problem has no targets in any order"));
+    mission.goals.pop_back();
+    CHECK_THAT(folder.errors_in([&] { return read_with(mission, text); }),
+               Contains("order.visits[0].target: expected the number of a target of the problem, 1 to 2"));
+    // A plan by hand shows its order, unless there is a place to return to.
+    const std::string by_hand = solution_json(sample(), {"girder", "girder.yaml", "abc"});
+    CHECK_FALSE(read_with(mission, by_hand).order);
+    mission.return_to = mission.goals.front();
+    CHECK(read_with(mission, by_hand).order == given_order(mission));
+}
+
 TEST_CASE("A flight in space costs what it takes of energy and time, and nothing is said of other objectives") {
     SpaceFlight flight;
     flight.energy_j = 50;

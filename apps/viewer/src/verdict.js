@@ -3,6 +3,7 @@
 import {certificate_sentence} from "./certificate.js";
 import {foreign, h} from "./dom.js";
 import {cost, degrees, meters, number, place, point, quantity, seconds} from "./format.js";
+import {order_list} from "./order_list.js";
 import {cause_text, knowledge, numbered_goal_name, outcome_text, variants} from "./words.js";
 
 /** How, where and when the flight of a plan fails. */
@@ -32,7 +33,8 @@ function failure_lines(model, how) {
 
 /** The world of the flight and where it has the vehicle, unless it is the nominal one. */
 function world_text({world, lateral_m}) {
-    const beside = lateral_m ? `, ${place(Math.abs(lateral_m))} to the ${lateral_m < 0 ? "right" : "left"} of its plane` : "";
+    const beside =
+        lateral_m ? `, ${place(Math.abs(lateral_m))} to the ${lateral_m < 0 ? "right" : "left"} of its plane` : "";
     return world ? `, in world ${world.index} of seed ${world.seed}${beside}` : "";
 }
 
@@ -66,18 +68,24 @@ function blocked_lines(model) {
         lines.push("The search was interrupted.");
     }
     if (stop?.cause === "closed_plane") {
-        return [...lines, `${quoted(stop.obstacles ?? [])} ${(stop.obstacles ?? []).length === 1 ? "closes" : "close"} ` +
-            `every way to ${goal} within the bounds: the vehicle does not get past at any pitch or arm angle.`];
+        return [
+            ...lines,
+            `${quoted(stop.obstacles ?? [])} ${(stop.obstacles ?? []).length === 1 ? "closes" : "close"} ` +
+                `every way to ${goal} within the bounds: the vehicle does not get past at any pitch or arm angle.`
+        ];
     }
     if (status === "approximate" && outcome === "ok" && (solution.order?.left_out ?? []).length > 0) {
-        return [...lines, "No flight was found to some targets. The page shows one to the others, which counts as no solution."];
+        return [
+            ...lines,
+            "No flight was found to some targets. The page shows one to the others, which counts as no solution."
+        ];
     }
     if (status === "approximate") {
         const flight = execution ? ` Its execution ${outcome_text(outcome)}.` : "";
         const shown = is_screened && failed ? `a way to ${goal} that fails too often in other worlds` :
-            is_screened           ? `a way to ${goal} that was not flown in enough worlds` :
-            certificate           ? "a plan that reaches the goal without a certificate" :
-                                    `an approximate plan: it ends near ${goal}`;
+            is_screened ? `a way to ${goal} that was not flown in enough worlds` :
+            certificate ? "a plan that reaches the goal without a certificate" :
+                          `an approximate plan: it ends near ${goal}`;
         lines.push(`The page shows ${shown}, which counts as no solution.${is_screened ? "" : flight}`);
     }
     if (Number.isFinite(nearest) && !is_screened) {
@@ -89,13 +97,13 @@ function blocked_lines(model) {
             "obstacle than the margin, " +
             `at ${point(stop.x_m, stop.z_m)}, arm ${degrees(stop.arm_rad)}.`);
     } else if (stop?.cause === "unfinished_flight") {
-        lines.push(
-            `The planner found a way to ${goal}, but the time was over before its flight with direct aerodynamics was.`);
+        lines.push(`The planner found a way to ${
+            goal}, but the time was over before its flight with direct aerodynamics was.`);
     } else if (stop?.cause === "unfinished_certificate") {
         lines.push(`The planner found a way to ${goal}, but the time was over before it was flown in enough worlds.`);
     } else if (stop?.cause === "certificate") {
-        lines.push(
-            `The planner discarded every plan to ${goal}: in worlds that the search had not seen, each failed too often.`);
+        lines.push(`The planner discarded every plan to ${
+            goal}: in worlds that the search had not seen, each failed too often.`);
     } else if (stop) {
         lines.push(
             `The planner rejected the nearest path into ${region} because it ${cause_text(stop.cause)}` +
@@ -122,8 +130,10 @@ export function verdict_of(model) {
     const {solution, outcome} = model;
     const {execution} = solution;
     if (solution.status === "unplanned") {
-        const line = ["The page shows the problem as ", h("code", null, "downwash check"),
-                      " read it. The vehicle stands at its start."];
+        const line = [
+            "The page shows the problem as ", h("code", null, "downwash check"),
+            " read it. The vehicle stands at its start."
+        ];
         return {kind: "none", mark: "○", title: "Not planned yet", lines: [line]};
     }
     if (solution.status !== "solved") {
@@ -220,28 +230,10 @@ export function make_figures(model) {
                 h("dd", null, h("span", {class: "figure"}, value), note ? h("span", {class: "muted"}, note) : null))));
 }
 
-const orders = {any_of: "any of them", any_order: "in any order"};
-
-/** In which order targets are visited, which are left out, and why; null where the order is given. */
-function order_list({solution}) {
-    const {order} = solution;
-    if (!order) {
-        return null;
-    }
-    const visited = order.visits.map(
-        ({target, alternative}) => alternative ? `${target} (alternative ${alternative})` : `${target}`);
-    const legs = `${order.legs} flown legs`;
-    const how = !solution.plan ? "no plan in that order was found" :
-        order.is_best          ? `the cheapest by ${legs} and lower bounds of the others` :
-                                 `the cheapest that was found by ${legs}`;
-    const why = ({energy_j}) => Number.isFinite(energy_j) ?
-        `with it the flight takes about ${quantity(energy_j, ",.0f", "J")}, more than it may` :
-        "no flight to it was found";
-    return h(
-        "ul", {class: "goal-visits order"},
-        h("li", null, visited.length > 0 ? `order of the targets: ${visited.join(", ")}; ${how}` : "no target is visited"),
-        order.left_out.map((each) => h("li", null, `target ${each.target} is left out: ${why(each)}`)));
-}
+const orders = {
+    any_of: "any of them",
+    any_order: "in any order"
+};
 
 function goals_list(model) {
     const visits = model.solution.execution?.goals ?? [];
@@ -288,9 +280,8 @@ export function make_head(model, theme_switch) {
               h("span", {title: variants[solution.variant] ?? null}, String(solution.variant).toUpperCase())),
           fact("algorithm", solution.algorithm), fact("objective", model.objective),
           fact("seed", String(solution.seed)),
-          model.goals.length > 1 ?
-              fact("goals", `${model.goals.length}, ${orders[report.goal_order] ?? "in turn"}`) :
-              null));
+          model.goals.length > 1 ? fact("goals", `${model.goals.length}, ${orders[report.goal_order] ?? "in turn"}`) :
+                                   null));
 }
 
 export function make_verdict(model) {
@@ -300,6 +291,6 @@ export function make_verdict(model) {
         "section", {class: `verdict ${kind}`, "aria-labelledby": "verdict-title"},
         h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
           h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)),
-            certificate ? h("p", {class: "certificate-line"}, certificate) : null,
-            order_list(model), goals_list(model), warnings_list(model))));
+            certificate ? h("p", {class: "certificate-line"}, certificate) : null, order_list(model), goals_list(model),
+            warnings_list(model))));
 }

@@ -84,7 +84,7 @@ function make_goals({goals, report}) {
                 (goal) =>
                     [goal.name, kinds[goal.kind], goal.position_m ? triple(goal.position_m) : "anywhere",
                      goal.tolerance_m !== undefined ? place(goal.tolerance_m) : "–", demand_of(goal),
-                     seconds(goal.hold_s)])),
+                     goal.number > 0 ? seconds(goal.hold_s) : "–"])),
         orders[report.goal_order] ? h("p", {class: "muted"}, orders[report.goal_order]) : null);
 }
 

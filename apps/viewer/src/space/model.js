@@ -59,7 +59,7 @@ function hovers_of(data, rows, columns, {goals, goal_order}) {
             from = i;
         }
     }
-    const count = goals.length > 0 ? goals[goals.length - 1].number : 0;
+    const count = Math.max(0, ...goals.map(({number}) => number));
     const is_of_goals = goal_order === "in_turn" && hovers.length === count;
     return hovers.map((hover, i) => ({...hover, goal: is_of_goals ? i + 1 : null}));
 }

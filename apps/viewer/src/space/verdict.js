@@ -3,6 +3,7 @@
 import {foreign, h} from "../dom.js";
 import {cost, degrees, meters, number, place, quantity, seconds} from "../format.js";
 import {range_of} from "../numbers.js";
+import {order_list} from "../order_list.js";
 import {outcome_text} from "../words.js";
 
 const point = (at) => ["x", "y", "z"].map((axis, k) => `${axis}\u00a0${place(at[k])}`).join(", ");
@@ -103,7 +104,7 @@ export function make_verdict(model) {
         "section", {class: `verdict ${kind}`, "aria-labelledby": "verdict-title"},
         h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
           h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)),
-            judge ? h("p", {class: "judge-line"}, judge) : null, warnings_list(model))));
+            judge ? h("p", {class: "judge-line"}, judge) : null, order_list(model), warnings_list(model))));
 }
 
 /** Key figures of the flight; null where nothing was flown. */
