@@ -6,6 +6,7 @@
 #include "downwash/base/export.hpp"
 #include "downwash/base/stop_condition.hpp"
 #include "downwash/controllers/plan.hpp"
+#include "downwash/search/family.hpp"
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash::planning {

@@ -48,6 +48,7 @@ using Found = FoundOf<planning::Plane>;
 
 /// What an executed flight costs.
 [[nodiscard]] DOWNWASH_EXPORT double cost_of(const Execution& execution, const CostFunction& objective);
+[[nodiscard]] DOWNWASH_EXPORT double cost_of(const SpaceFlight& flight, const CostFunction& objective);
 
 /// What a plan costs when it is executed or, as long as it was not, by the planner's own figure.
 [[nodiscard]] DOWNWASH_EXPORT double cost_of(const Found& found, const CostFunction& objective);

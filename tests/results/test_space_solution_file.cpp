@@ -132,17 +132,19 @@ TEST_CASE("A solution in space reads back as it was written, to the last bit") {
     CHECK(claims.has_cost);
 }
 
-TEST_CASE("A flight in space costs what it takes of energy and time, and nothing is said of other objectives") {
+TEST_CASE("A flight in space costs what it takes of energy, time, length and clearance") {
     SpaceFlight flight;
     flight.energy_j = 50;
     flight.duration_s = 3;
+    flight.length_m = 7;
+    flight.clearance_integral = 2;
     CHECK(cost_of(flight, Objective::energy) == 50);
     CostFunction sum;
     sum.weight(Objective::time) = 10;
     CHECK(cost_of(flight, sum) == 80);
-    CHECK_FALSE(cost_of(flight, Objective::length));
+    CHECK(cost_of(flight, Objective::length) == 7);
     sum.weight(Objective::clearance) = 1;
-    CHECK_FALSE(cost_of(flight, sum));
+    CHECK(cost_of(flight, sum) == 82);
 }
 
 TEST_CASE("A reference by hand needs its axes and times alone") {
