@@ -32,7 +32,7 @@ CourseOf<Family> advanced(CourseOf<Family> course, const typename Family::Goal& 
                                    course.vehicle.plant.energy_j + hover_power_w(*model.flight) * part_s);
         return course;
     }
-    course.vehicle = flown_on(model, course.plan, flown - 1, course.vehicle);
+    course.vehicle = flown_on(model, course.plan, flown - 1, goal, course.vehicle);
     return course;
 }
 

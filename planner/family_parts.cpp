@@ -55,7 +55,8 @@ SpacePlan with_hover(const SpacePlan& plan, const SpaceGoal& goal, const SpacePr
     return plan.held_for(rule.hovers(plan).front().end_tick - plan.reference.back().tick);
 }
 
-FlightState flown_on(const PlannerModel& model, const Plan& plan, std::size_t first, FlightState vehicle) {
+FlightState flown_on(const PlannerModel& model, const Plan& plan, std::size_t first, const Goal& /*goal*/,
+                     FlightState vehicle) {
     for (std::size_t knot = first + 1; knot < plan.reference.size(); ++knot) {
         const SegmentFlight flight =
             fly(*model.flight, model.own_map.get(), rules_of_execution(), plan.segment_to(knot), vehicle);
@@ -66,8 +67,27 @@ FlightState flown_on(const PlannerModel& model, const Plan& plan, std::size_t fi
     return vehicle;
 }
 
+SpaceTouchFlown fly_touch(const SpaceProblemModel& model, const SurfaceVolumes* map, const SpaceGoalRule& rule,
+                          const SpaceGoalHover& hover, const SpacePoint& at, const SpaceWorld* world,
+                          std::int64_t first_tick, AnySpaceState& vehicle, const StopCondition& is_over) {
+    const SpaceProblem& problem = model.problem();
+    SpaceFlightSettings settings;
+    std::optional<simulation::VolumeSpaceEffect> effect;
+    if (map != nullptr) {
+        settings.effect = &effect.emplace(*map, problem.robot);
+        settings.aero = simulation::space_aero(problem.aero, problem.robot.rotor_radius_m);
+    }
+    settings.checker = &model.collisions();
+    settings.world = world != nullptr ? *world : SpaceWorld{};
+    settings.first_tick = first_tick;
+    settings.measures_clearance = false;
+    settings.is_refined = false;
+    settings.is_over = is_over;
+    return downwash::fly_touch(problem.robot, rule, hover, at, vehicle, settings);
+}
+
 AnySpaceState flown_on(const PlannerModelOf<Space>& model, const SpacePlan& plan, std::size_t first,
-                       const AnySpaceState& vehicle) {
+                       const SpaceGoal& goal, const AnySpaceState& vehicle) {
     const SpaceProblem& problem = model.flight->problem();
     SpacePoolSetup setup{problem.robot};
     if (model.own_map != nullptr) {
@@ -86,7 +106,16 @@ AnySpaceState flown_on(const PlannerModelOf<Space>& model, const SpacePlan& plan
     if (job.rejection() != Rejection::none) {
         throw std::logic_error(flies_otherwise);
     }
-    return job.end();
+    const SpaceGoalRule rule(problem.robot, model.flight->shared_scene(), {goal});
+    const SpaceKnot& last = plan.reference.back();
+    const SpaceGoalHover hover = rule.hover_at(0, last.point);
+    if (!hover.touch) {
+        return job.end();
+    }
+    AnySpaceState after = job.end();
+    const SpaceTouchFlown touch =
+        fly_touch(*model.flight, model.own_map.get(), rule, hover, last.point, nullptr, last.tick, after);
+    return touch.rejection == Rejection::none ? after : job.end();
 }
 
 DirectFlightOf<Space> fly_directly(const SpaceProblemModel& model, const AnySpaceState& start, const SpacePlan& plan,
@@ -111,7 +140,7 @@ double cost_when_executed(const Execution& flight, const CostFunction& objective
 }
 
 double cost_when_executed(const SpaceFlight& flight, const CostFunction& objective) {
-    return objective({{}, flight.energy_j, flight.duration_s, 0});
+    return cost_of(flight, objective);
 }
 
 Obstruction obstruction_of(const Execution& flight, const SearchTask& task) {

@@ -45,12 +45,21 @@ namespace downwash::planning {
 /// A plan and the hover at its last goal, which ends at a knot of its own.
 [[nodiscard]] SpacePlan with_hover(const SpacePlan& plan, const SpaceGoal& goal, const SpaceProblemModel& model);
 
-/// The vehicle at the end of a plan that is flown on from one of its knots in the planner's own model, or where the
-/// flight ended.
+/// The vehicle at the end of a plan that is flown on from one of its knots to a goal, in the planner's own model. A
+/// touch that follows is flown, too; one that is not met in this model leaves the vehicle before it.
 /// @param first the knot at which the vehicle is   @throws std::logic_error if the flight is rejected
-[[nodiscard]] FlightState flown_on(const PlannerModel& model, const Plan& plan, std::size_t first, FlightState vehicle);
+[[nodiscard]] FlightState flown_on(const PlannerModel& model, const Plan& plan, std::size_t first, const Goal& goal,
+                                   FlightState vehicle);
 [[nodiscard]] AnySpaceState flown_on(const PlannerModelOf<Space>& model, const SpacePlan& plan, std::size_t first,
-                                     const AnySpaceState& vehicle);
+                                     const SpaceGoal& goal, const AnySpaceState& vehicle);
+
+/// Flies the touch that follows a hover in space in a planner's model. @throws WorkStopped
+/// @param map nullptr: surfaces do not act   @param at reference of the hover   @param world nullptr: the nominal one
+/// @param[in,out] vehicle
+[[nodiscard]] SpaceTouchFlown fly_touch(const SpaceProblemModel& model, const SurfaceVolumes* map,
+                                        const SpaceGoalRule& rule, const SpaceGoalHover& hover, const SpacePoint& at,
+                                        const SpaceWorld* world, std::int64_t first_tick, AnySpaceState& vehicle,
+                                        const StopCondition& is_over = {});
 
 /// Executes a plan in space with direct aerodynamics; see fly_directly() of the plane.
 /// @param start of which the controller's memory does not count   @param energy_budget_j that of the problem

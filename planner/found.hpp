@@ -48,5 +48,6 @@ using Found = FoundOf<planning::Plane>;
 
 /// What an executed flight costs.
 [[nodiscard]] DOWNWASH_EXPORT double cost_of(const Execution& execution, const CostFunction& objective);
+[[nodiscard]] DOWNWASH_EXPORT double cost_of(const SpaceFlight& flight, const CostFunction& objective);
 
 }  // namespace downwash

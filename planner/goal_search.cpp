@@ -14,15 +14,16 @@ namespace downwash::planning {
 namespace {
 
 /// The hooks of a search by one of OMPL's planners.
-OmplHooks hooks_of(CandidateCheck& check, const SolveOptions& options) {
-    OmplHooks hooks;
+template <class Family>
+OmplHooksOf<Family> hooks_of(CandidateCheckOf<Family>& check, const SolveOptionsOf<Family>& options) {
+    OmplHooksOf<Family> hooks;
     hooks.keep_tree = options.keep_tree;
     hooks.is_over = [&check](const OmplProgress& progress) {
         check.clock().note(progress.iteration, progress.nodes, progress.rejected);
         const std::optional<std::uint64_t>& most = check.task().problem.planner.max_iterations;
         return check.is_over() || (most && progress.iteration >= *most);
     };
-    hooks.accept = [&check](const Plan& plan, double cost, std::uint64_t iteration) {
+    hooks.accept = [&check](const typename Family::Plan& plan, double cost, std::uint64_t iteration) {
         const bool counts = check.counts(plan, cost);
         if (counts) {
             check.accept(plan, cost, iteration);
@@ -32,16 +33,19 @@ OmplHooks hooks_of(CandidateCheck& check, const SolveOptions& options) {
     return hooks;
 }
 
-SearchResult result_of(CandidateCheck& check, OmplResult found, const FlightStatistics& statistics) {
+template <class Family>
+SearchResultOf<Family> result_of(CandidateCheckOf<Family>& check, OmplResultOf<Family> found,
+                                 const FlightStatisticsOf<Family>& statistics) {
     return check.result(found.iterations, statistics, std::move(found.tree),
                         {found.status, std::move(found.plan), found.cost, found.nearest_approach_m});
 }
 
 /// OMPL's planners on straight lines.
-SearchResult search_lines(CandidateCheck& check, const SolveOptions& options) {
+template <class Family>
+SearchResultOf<Family> search_lines(CandidateCheckOf<Family>& check, const SolveOptionsOf<Family>& options) {
     Random random(check.task().problem.planner.seed);
-    GeometricResult found = plan_geometrically(check.task(), random, hooks_of(check, options));
-    FlightStatistics statistics;
+    GeometricResultOf<Family> found = plan_geometrically(check.task(), random, hooks_of(check, options));
+    FlightStatisticsOf<Family> statistics;
     statistics.states_checked = found.counts.states;
     statistics.rejected = no_rejections();
     statistics.rejected["collision"] = found.counts.rejected_collision;
@@ -49,17 +53,18 @@ SearchResult search_lines(CandidateCheck& check, const SolveOptions& options) {
     statistics.rejected["bounds"] = found.counts.rejected_bounds;
     statistics.rejected["arm_limits"] = found.counts.rejected_arm_limits;
     statistics.rejected["direct_flight"] = found.discarded;
-    return result_of(check, std::move(found), statistics);
+    return result_of<Family>(check, std::move(found), statistics);
 }
 
 /// OMPL's planners over controls.
-SearchResult search_controls(CandidateCheck& check, const SolveOptions& options) {
+template <class Family>
+SearchResultOf<Family> search_controls(CandidateCheckOf<Family>& check, const SolveOptionsOf<Family>& options) {
     Random random(check.task().problem.planner.seed);
-    PlannedFlights planned(
+    PlannedFlightsOf<Family> planned(
         check.task(), [&check] { return check.is_over(); }, options.threads);
-    const SteeredFlights flights(planned);
-    OmplResult found = plan_by_controls(flights, random, hooks_of(check, options));
-    return result_of(check, std::move(found), planned.statistics());
+    const SteeredFlightsOf<Family> flights(planned);
+    OmplResultOf<Family> found = plan_by_controls(flights, random, hooks_of(check, options));
+    return result_of<Family>(check, std::move(found), planned.statistics());
 }
 
 /// Draws places with the numbers of a search, all over its space and beside others.
@@ -156,22 +161,29 @@ SearchResultOf<Family> search_tree(CandidateCheckOf<Family>& check, const SolveO
     return check.result(search.iterations(), search.statistics(), std::move(tree), approach);
 }
 
+/// The search with the algorithm that the problem names.
+template <class Family>
+SearchResultOf<Family> search_by_algorithm(CandidateCheckOf<Family>& check, const SolveOptionsOf<Family>& options) {
+    const PlannerSettings& settings = check.task().problem.planner;
+    if (settings.algorithm == "rrt-star") {
+        return search_tree(check, options);
+    }
+    return plans_flights(settings.variant) ? search_controls(check, options) : search_lines(check, options);
+}
+
 }  // namespace
 
 SearchResultOf<Space> search_goal(const SpaceProblem& part, const SpaceProblem& whole,
                                   const PlannerModelOf<Space>& model, const CourseOf<Space>& before,
                                   const PlanChecksOf<Space>& checks, const SolveOptionsOf<Space>& options) {
     CandidateCheckOf<Space> check(part, whole, model, before, checks, options);
-    return search_tree(check, options);
+    return search_by_algorithm(check, options);
 }
 
 SearchResult search_goal(const Problem& part, const Problem& whole, const PlannerModel& model, const Course& before,
                          const PlanChecks& checks, const SolveOptions& options) {
     CandidateCheck check(part, whole, model, before, checks, options);
-    if (part.planner.algorithm == "rrt-star") {
-        return search_tree(check, options);
-    }
-    return plans_flights(part.planner.variant) ? search_controls(check, options) : search_lines(check, options);
+    return search_by_algorithm(check, options);
 }
 
 }  // namespace downwash::planning

@@ -13,7 +13,7 @@ namespace downwash::planning {
                                                        const PlannerModel& model, const Course& before,
                                                        const PlanChecks& checks, const SolveOptions& options);
 
-/// The same in space, with our own tree.
+/// The same in space.
 [[nodiscard]] SearchResultOf<Space> search_goal(const SpaceProblem& part, const SpaceProblem& whole,
                                                 const PlannerModelOf<Space>& model, const CourseOf<Space>& before,
                                                 const PlanChecksOf<Space>& checks,

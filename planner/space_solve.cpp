@@ -49,43 +49,18 @@ std::shared_ptr<const SurfaceVolumes> volumes_for(const SpaceProblemModel& model
     return volumes;
 }
 
-bool asks_for_contact(const SpaceGoal& goal) {
-    const auto is_contact = [](const SpaceGoal& one) { return std::holds_alternative<SpaceContactGoal>(one.kind); };
-    return goal.any_of.empty() ? is_contact(goal) : std::ranges::any_of(goal.any_of, is_contact);
-}
-
 }  // namespace
 
 std::vector<KeyError> space_planning_errors(const SpaceProblem& problem) {
     std::vector<KeyError> errors;
     const PlannerSettings& planner = problem.planner;
-    for (std::size_t i = 0; i < problem.goals.size(); ++i) {
-        if (asks_for_contact(problem.goals[i])) {
-            const bool is_only = problem.goals.size() == 1 && !problem.in_any_order;
-            errors.push_back({std::string(problem.in_any_order ? "goal.in_any_order" : "goal") +
-                                  (is_only ? "" : "[" + std::to_string(i) + "]"),
-                              "asks for contact, for which nothing plans in space yet: expected another goal"});
-        }
-    }
-    if (planner.algorithm != "rrt-star") {
-        errors.push_back(
-            {"planner.algorithm", "is '" + planner.algorithm + "', which does not plan in space: expected rrt-star"});
-    }
-    if (planner.objective.weight(Objective::length) > 0 || planner.objective.weight(Objective::clearance) > 0) {
-        errors.push_back({"planner.objective",
-                          "counts length or clearance, which flights in space do not sum up: expected energy, time or "
-                          "a sum of them"});
-    }
-    if (planner.max_pitch_rate_rad_s) {
-        errors.push_back({"planner.max_pitch_rate_deg_s", "is not kept in space yet: expected no such limit"});
+    if (planner.algorithm != "rrt-star" && problem.motion.yaw.mode != YawMode::free) {
+        errors.push_back({"motion.yaw", "is a rule that '" + planner.algorithm + "' does not keep: expected free"});
     }
     if (const auto share = planner.parameters.find("passage_share");
         share != planner.parameters.end() && share->second > 0) {
         errors.push_back({"planner.parameters.passage_share",
                           "is above 0, and narrow passages are not looked for in space yet: expected 0"});
-    }
-    if (problem.motion.yaw.mode != YawMode::free) {
-        errors.push_back({"motion.yaw", "is a rule that searches do not keep yet: expected free"});
     }
     return errors;
 }

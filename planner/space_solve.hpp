@@ -21,8 +21,8 @@ struct SpaceSearchResult : FoundOf<planning::Space> {
     SearchRecord planning;
 };
 
-/// What of a sound problem in space cannot be planned yet: contact, objectives that count length or clearance, other
-/// algorithms than rrt-star. Keys are key paths of a problem file. Empty if it can be planned.
+/// What of a sound problem in space cannot be planned yet: narrow passages, rules of yaw by OMPL's planners. Keys are
+/// key paths of a problem file. Empty if it can be planned.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> space_planning_errors(const SpaceProblem& problem);
 
 /// Plans, and flies the plan with direct aerodynamics, hold included; see solve() of the plane. The same search finds

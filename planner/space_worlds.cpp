@@ -57,6 +57,47 @@ std::vector<SpaceFlightLeg> legs_of(const SpacePlan& plan, std::size_t first, st
     return legs;
 }
 
+/// The ways to the hovers of a plan from one of its knots on, one after the other; the last hover lasts to the end of
+/// the plan.
+std::vector<SpaceProblemWorlds::Way> ways_to(const std::vector<SpaceGoalHover>& hovers, const SpacePlan& plan,
+                                             std::size_t first) {
+    std::vector<SpaceProblemWorlds::Way> ways;
+    std::size_t knot = first;
+    for (std::size_t i = 0; i < hovers.size(); ++i) {
+        std::size_t last = plan.reference.size() - 1;
+        if (i + 1 < hovers.size()) {
+            const auto end = std::ranges::find(plan.reference, hovers[i].end_tick, &SpaceKnot::tick);
+            last = static_cast<std::size_t>(end - plan.reference.begin());
+        }
+        if (last > first) {
+            ways.push_back({i, std::exchange(knot, last), last});
+        }
+    }
+    return ways;
+}
+
+/// Leaves out jobs that were rejected; the others go on where they have ended.
+/// @param world_of of each job   @param on_rejected called with the world of each rejected job, and with the job
+template <class OnRejected>
+void keep_accepted(std::vector<SpaceFlightJob>& jobs, std::vector<std::size_t>& world_of,
+                   const OnRejected& on_rejected) {
+    std::vector<SpaceFlightJob> left;
+    std::vector<std::size_t> worlds_left;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+        if (jobs[i].rejection() != Rejection::none) {
+            on_rejected(world_of[i], jobs[i]);
+            continue;
+        }
+        left.push_back({jobs[i].end(), {}, jobs[i].world, jobs[i].first_tick});
+        worlds_left.push_back(world_of[i]);
+    }
+    jobs = std::move(left);
+    world_of = std::move(worlds_left);
+}
+
+/// Enough to tell which flights came nearest.
+constexpr ClearanceError rough_clearance{0.1, 0.02};
+
 /// Lets flights ask a condition as long as a call goes on.
 class Asking {
  public:
@@ -99,6 +140,9 @@ SpacePool& SpaceProblemWorlds::pool(std::size_t goal, bool among_surfaces) {
         }
         setup.checker = &model_.flight->collisions();
         setup.goal = rules_[goal].get();
+        if (among_surfaces) {
+            setup.finds_min_clearance = rough_clearance;
+        }
         setup.is_over = [this] { return is_over_ && is_over_(); };
         pools[goal] = std::make_unique<SpacePool>(setup, threads_);
     }
@@ -149,22 +193,53 @@ SearchWorldsOf<Space> SpaceProblemWorlds::for_search(const CourseOf<Space>& befo
     }
     FlownFleetOf<Space> fleet =
         known > 0 ? searching_[known - 1] : FlownFleetOf<Space>{{}, starts_in(search_worlds_, false)};
-    advance(fleet.vehicles, before.plan, fleet.reference.empty() ? 0 : fleet.reference.size() - 1, search_worlds_);
+    advance(fleet.vehicles, before, fleet.reference.empty() ? 0 : fleet.reference.size() - 1, search_worlds_);
     fleet.reference = before.plan.reference;
     SearchWorldsOf<Space> search = worlds_of_search<Space>(search_worlds_, fleet.vehicles);
     searching_[before.goals.size()] = std::move(fleet);
     return search;
 }
 
+void SpaceProblemWorlds::advance(std::vector<SpaceFlightJob>& jobs, const SpacePlan& plan, const Way& way,
+                                 bool is_certificate) {
+    const SpaceKnot& at = plan.reference[way.last];
+    for (SpaceFlightJob& job : jobs) {
+        job.legs = legs_of(plan, way.first, way.last);
+        job.judged_ticks = is_certificate ? std::llround(goal_settling_s / plan.tick_s) : 0;
+    }
+    pool(way.goal, is_certificate).fly(jobs);
+    throw_if_over(is_over_);  // then some were interrupted
+    for (SpaceFlightJob& job : jobs) {
+        job.first_tick += at.tick - plan.reference[way.first].tick;
+    }
+    const SpaceGoalRule& rule = *rules_[way.goal];
+    const SpaceGoalHover hover = rule.hover_at(0, at.point);
+    if (!hover.touch) {
+        return;
+    }
+    const auto& map = is_certificate ? model_.true_map : model_.own_map;
+    run_parallel(jobs.size(), threads_, [&](std::size_t i) {
+        SpaceFlightJob& job = jobs[i];
+        if (job.rejection() == Rejection::none) {
+            SpaceFlightLeg& last = job.legs.back();
+            const SpaceTouchFlown touch = fly_touch(*model_.flight, map.get(), rule, hover, at.point, job.world,
+                                                    job.first_tick, last.end, is_over_);
+            last.flight.rejection = touch.rejection;
+            job.first_tick += touch.ticks;
+        }
+    });
+}
+
 SpaceProblemWorlds::Vehicles SpaceProblemWorlds::vehicles_after(const CourseOf<Space>& before,
                                                                 std::span<const SpaceWorld> worlds) {
     Vehicles vehicles = starts_in(worlds, false);
-    advance(vehicles, before.plan, 0, worlds);
+    advance(vehicles, before, 0, worlds);
     return vehicles;
 }
 
-void SpaceProblemWorlds::advance(Vehicles& vehicles, const SpacePlan& plan, std::size_t first,
+void SpaceProblemWorlds::advance(Vehicles& vehicles, const CourseOf<Space>& before, std::size_t first,
                                  std::span<const SpaceWorld> worlds) {
+    const SpacePlan& plan = before.plan;
     if (first + 1 >= plan.reference.size()) {
         return;
     }
@@ -172,14 +247,17 @@ void SpaceProblemWorlds::advance(Vehicles& vehicles, const SpacePlan& plan, std:
     std::vector<std::size_t> world_of;
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         if (vehicles[i]) {
-            jobs.push_back({*vehicles[i], legs_of(plan, first, plan.reference.size() - 1), &worlds[i],
-                            plan.reference[first].tick});
+            jobs.push_back({*vehicles[i], {}, &worlds[i], plan.reference[first].tick});
             world_of.push_back(i);
         }
     }
-    pool(0, false).fly(jobs);
+    const SpaceGoalRule rule(problem_.robot, model_.flight->shared_scene(), before.goals);
+    for (const Way& way : ways_to(rule.hovers(plan), plan, first)) {
+        advance(jobs, plan, way, false);
+        keep_accepted(jobs, world_of, [&](std::size_t world, const SpaceFlightJob&) { vehicles[world].reset(); });
+    }
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-        vehicles[world_of[i]] = jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
+        vehicles[world_of[i]] = jobs[i].start;
     }
 }
 
@@ -207,48 +285,29 @@ std::vector<WorldSample> SpaceProblemWorlds::fly_on(Vehicles& vehicles, const Sp
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         samples[i] = {first_world + i, Outcome::unstable, 0, 0, false};
         if (vehicles[i]) {
-            jobs.push_back({*vehicles[i], {}, &worlds[i]});
+            jobs.push_back({*vehicles[i], {}, &worlds[i], plan.reference[first].tick});
             world_of.push_back(i);
             samples[i].outcome = Outcome::ok;
             samples[i].min_clearance_m = infinity;
             vehicles[i].reset();
         }
     }
-    const std::int64_t settling = std::llround(goal_settling_s / plan.tick_s);
-    std::size_t knot = first;
-    for (std::size_t visit = 0; visit < hovers.size(); ++visit) {
-        if (hovers[visit].end_tick <= plan.reference[first].tick) {
-            continue;
+    const auto measure = [&](WorldSample& sample, const SpaceFlightJob& job) {
+        for (const SpaceFlightLeg& leg : job.legs) {
+            sample.min_clearance_m = std::min(sample.min_clearance_m, leg.flight.min_clearance_m);
         }
-        const auto end = std::ranges::find_if(
-            held.reference, [&](const SpaceKnot& each) { return each.tick == hovers[visit].end_tick; });
-        const auto last = static_cast<std::size_t>(end - held.reference.begin());
-        for (SpaceFlightJob& job : jobs) {
-            job.legs = legs_of(held, knot, last);
-            job.first_tick = held.reference[knot].tick;
-            job.judged_ticks = settling;
-        }
-        pool(visit, true).fly(jobs);
-        throw_if_over(is_over);  // then some were interrupted
-        std::vector<SpaceFlightJob> left;
-        std::vector<std::size_t> worlds_left;
+    };
+    for (const Way& way : ways_to(hovers, held, first)) {
+        advance(jobs, held, way, true);
         for (std::size_t i = 0; i < jobs.size(); ++i) {
-            WorldSample& sample = samples[world_of[i]];
-            const Rejection rejection = jobs[i].rejection();
-            if (rejection != Rejection::none) {
-                sample.outcome = outcome_of(rejection);
-                sample.goal = visit;
-                sample.min_clearance_m = rejection == Rejection::collision ? 0 : infinity;
-                continue;
-            }
-            SpaceFlightJob& on = left.emplace_back();
-            on.start = jobs[i].end();
-            on.world = jobs[i].world;
-            worlds_left.push_back(world_of[i]);
+            measure(samples[world_of[i]], jobs[i]);
         }
-        jobs = std::move(left);
-        world_of = std::move(worlds_left);
-        knot = last;
+        keep_accepted(jobs, world_of, [&](std::size_t world, const SpaceFlightJob& job) {
+            WorldSample& sample = samples[world];
+            sample.outcome = outcome_of(job.rejection());
+            sample.goal = way.goal;
+            sample.min_clearance_m = sample.outcome == Outcome::collision ? 0 : sample.min_clearance_m;
+        });
     }
     const bool misses_a_goal = hovers.size() < visits;
     for (std::size_t i = 0; i < jobs.size(); ++i) {

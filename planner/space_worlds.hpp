@@ -34,6 +34,11 @@ class SpaceProblemWorlds {
                                      const WorldCounter& counter = {});
     [[nodiscard]] std::size_t goals() const noexcept { return problem_.goals.size(); }
 
+    /// The way of a plan from one of its knots to the end of a hover for a goal, and the touch that follows there.
+    struct Way {
+        std::size_t goal, first, last;
+    };
+
  private:
     using Vehicles = VehiclesOf<Space>;
 
@@ -42,9 +47,13 @@ class SpaceProblemWorlds {
     [[nodiscard]] SpaceWorld world(std::uint64_t index) const;
     /// Vehicles that have hovered at the start, or start there moving; nothing for those that do not stay there.
     [[nodiscard]] Vehicles starts_in(std::span<const SpaceWorld> worlds, bool among_surfaces);
+    /// Moves vehicles on; jobs go on where they start, and have the touch at the end of their last leg.
+    /// @param is_certificate among all surfaces, and goals are judged   @throws WorkStopped
+    void advance(std::vector<SpaceFlightJob>& jobs, const SpacePlan& plan, const Way& way, bool is_certificate);
     [[nodiscard]] Vehicles vehicles_after(const CourseOf<Space>& before, std::span<const SpaceWorld> worlds);
     /// Moves vehicles on along a plan, from one of its knots to its last; nothing is left of those that fail.
-    void advance(Vehicles& vehicles, const SpacePlan& plan, std::size_t first, std::span<const SpaceWorld> worlds);
+    void advance(Vehicles& vehicles, const CourseOf<Space>& before, std::size_t first,
+                 std::span<const SpaceWorld> worlds);
     /// Flies a plan through the first goals of the problem. @throws WorkStopped
     /// @param vehicles at a knot of it, nothing where the flight failed before; in the end those at its end
     /// @param first that knot: 0, or the one at which the hover for a goal ends

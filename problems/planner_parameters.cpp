@@ -91,8 +91,8 @@ Rows planner_rows() {
                 &Settings::max_saturation)
              .between(1, 1000),
          number("max_pitch_rate_deg_s",
-                "how fast the vehicle may turn while planning; an edge that turns faster is rejected as unstable; "
-                "null: at any rate",
+                "how fast the vehicle may turn while planning, in space in roll and pitch together; an edge that turns "
+                "faster is rejected as unstable; null: at any rate",
                 &Settings::max_pitch_rate_rad_s)
              .between(1e-3, 1e5),
          parameters::flag<PlannerSettings>(

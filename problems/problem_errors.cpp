@@ -213,61 +213,6 @@ std::vector<KeyError> start_not_flyable(const ProblemCheck& check) {
     return {};
 }
 
-std::vector<KeyError> algorithm_of_another_variant(const Problem& p) {
-    std::vector<std::string_view> names;
-    for (const AlgorithmInfo& algorithm : algorithms()) {
-        if (algorithm.plans_for(p.planner.variant)) {
-            names.push_back(algorithm.name);
-        }
-    }
-    if (std::find(names.begin(), names.end(), p.planner.algorithm) != names.end()) {
-        return {};
-    }
-    std::string hint = did_you_mean(p.planner.algorithm, names);
-    if (hint.empty()) {
-        hint = "; did you mean '" + std::string(names.front()) + "'?";
-    }
-    return {{"planner.algorithm", "is '" + excerpt(p.planner.algorithm) + "', which does not plan for " +
-                                      std::string(name_of(p.planner.variant)) + ": expected " + joined_names(names) +
-                                      hint}};
-}
-
-/// Settings of flights under the variant that flies nothing.
-std::vector<KeyError> flights_without_flying(const Problem& p) {
-    const PlannerSettings& given = p.planner;
-    const PlannerSettings defaults;
-    std::vector<KeyError> errors;
-    if (plans_flights(given.variant)) {
-        return errors;
-    }
-    const auto reject = [&errors](const char* key) {
-        errors.push_back({key,
-                          "is about flights, and the edges of mp-arm are lines: expected mp-arm-da or mp-arm-ada, or "
-                          "no such key"});
-    };
-    if (given.worlds != defaults.worlds) {
-        reject("planner.worlds");
-    }
-    if (given.max_saturation != defaults.max_saturation) {
-        reject("planner.max_saturation");
-    }
-    if (given.max_pitch_rate_rad_s) {
-        reject("planner.max_pitch_rate_deg_s");
-    }
-    return errors;
-}
-
-std::vector<KeyError> split_whole_numbers(const Problem& p) {
-    std::vector<KeyError> errors;
-    for (const auto& [name, value] : p.planner.parameters) {
-        const AlgorithmParameter* parameter = algorithm_parameter(p.planner, name);
-        if (parameter != nullptr && parameter->is_whole && value != std::floor(value)) {
-            errors.push_back({"planner.parameters." + name, "is " + to_text(value) + ": expected a whole number"});
-        }
-    }
-    return errors;
-}
-
 std::vector<KeyError> unflyable_uncertainty(const Problem& p) {
     return p.uncertainty ? uncertainty_errors(*p.uncertainty, p.robot) : std::vector<KeyError>();
 }
@@ -292,10 +237,10 @@ const std::array<Check<ProblemCheck>, 20> checks{{
     {{"environment.obstacles", "environment.plane", "start", "robot.rotors", "aero"}, start_not_flyable},
     {{"uncertainty", "robot.uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
     {{"planner.objective"}, weightless_objective<Problem>},
-    {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant},
+    {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant<Problem>},
     {{"planner.variant", "planner.worlds", "planner.max_saturation", "planner.max_pitch_rate_deg_s"},
-     flights_without_flying},
-    {{"planner.parameters"}, split_whole_numbers},
+     flights_without_flying<Problem>},
+    {{"planner.parameters"}, split_whole_numbers<Problem>},
 }};
 
 }  // namespace

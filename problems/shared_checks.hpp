@@ -3,6 +3,7 @@
 // Private to problems/.
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/number_text.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/scene/shape_parameters.hpp"
@@ -90,6 +92,66 @@ std::vector<KeyError> weightless_objective(const Model& p) {
         return {{"planner.objective", "has no weight above 0: expected one at least"}};
     }
     return {};
+}
+
+/// An algorithm that does not plan for the variant.
+template <class Model>
+std::vector<KeyError> algorithm_of_another_variant(const Model& p) {
+    std::vector<std::string_view> names;
+    for (const AlgorithmInfo& algorithm : algorithms()) {
+        if (algorithm.plans_for(p.planner.variant)) {
+            names.push_back(algorithm.name);
+        }
+    }
+    if (std::find(names.begin(), names.end(), p.planner.algorithm) != names.end()) {
+        return {};
+    }
+    std::string hint = did_you_mean(p.planner.algorithm, names);
+    if (hint.empty()) {
+        hint = "; did you mean '" + std::string(names.front()) + "'?";
+    }
+    return {{"planner.algorithm", "is '" + excerpt(p.planner.algorithm) + "', which does not plan for " +
+                                      std::string(name_of(p.planner.variant)) + ": expected " + joined_names(names) +
+                                      hint}};
+}
+
+/// Settings of flights under the variant that flies nothing.
+template <class Model>
+std::vector<KeyError> flights_without_flying(const Model& p) {
+    const PlannerSettings& given = p.planner;
+    const PlannerSettings defaults;
+    std::vector<KeyError> errors;
+    if (plans_flights(given.variant)) {
+        return errors;
+    }
+    const auto reject = [&errors](const char* key) {
+        errors.push_back({key,
+                          "is about flights, and the edges of mp-arm are lines: expected mp-arm-da or mp-arm-ada, or "
+                          "no such key"});
+    };
+    if (given.worlds != defaults.worlds) {
+        reject("planner.worlds");
+    }
+    if (given.max_saturation != defaults.max_saturation) {
+        reject("planner.max_saturation");
+    }
+    if (given.max_pitch_rate_rad_s) {
+        reject("planner.max_pitch_rate_deg_s");
+    }
+    return errors;
+}
+
+/// Parameters of an algorithm that are no whole numbers and should be.
+template <class Model>
+std::vector<KeyError> split_whole_numbers(const Model& p) {
+    std::vector<KeyError> errors;
+    for (const auto& [name, value] : p.planner.parameters) {
+        const AlgorithmParameter* parameter = algorithm_parameter(p.planner, name);
+        if (parameter != nullptr && parameter->is_whole && value != std::floor(value)) {
+            errors.push_back({"planner.parameters." + name, "is " + to_text(value) + ": expected a whole number"});
+        }
+    }
+    return errors;
 }
 
 /// Planning without a margin. A warning.

@@ -377,7 +377,7 @@ Errors touches_that_settle_late(const SpaceProblem& p) {
                                      " s; raise the gains of the position"}};
 }
 
-const std::array<Check<SpaceProblem>, 16> checks{{
+const std::array<Check<SpaceProblem>, 19> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names<SpaceProblem>},
     {{"environment.obstacles"}, shapeless_cylinders<SpaceProblem>},
@@ -391,6 +391,10 @@ const std::array<Check<SpaceProblem>, 16> checks{{
     {{"environment.obstacles", "start", "robot.rotors", "aero"}, start_not_flyable},
     {{"uncertainty", "robot.uncertainty", "robot.rotors.time_constant_s", "robot.controller"}, unflyable_uncertainty},
     {{"planner.objective"}, weightless_objective<SpaceProblem>},
+    {{"planner.variant", "planner.algorithm"}, algorithm_of_another_variant<SpaceProblem>},
+    {{"planner.variant", "planner.worlds", "planner.max_saturation", "planner.max_pitch_rate_deg_s"},
+     flights_without_flying<SpaceProblem>},
+    {{"planner.parameters"}, split_whole_numbers<SpaceProblem>},
     {{"goal"}, goal_count},
     {{"goal"}, unclear_mission},
     {{"goal", "environment.bounds", "environment.obstacles", "robot.arm"}, unclear_goals},

@@ -152,8 +152,9 @@ void add_motion(Rows& rows) {
              .between(0.1, 36000),
          parameters::choice<SpaceProblem>(
              "motion.yaw",
-             "free: what goals ask for, by the shortest turn; hold: that of the start; along: the nose along the "
-             "way; toward: the nose to a point",
+             "where the vehicle looks, where no goal asks for a yaw; free: as the next goal asks, by the shortest "
+             "turn; "
+             "hold: as at the start; along: along the way; toward: to a point",
              parameters::named(all_yaw_modes), [](auto& p) -> auto& { return p.motion.yaw.mode; }),
          parameters::pair<SpaceProblem>(
              "motion.yaw_toward_m", "the point, in the world", {"x", "y"},

@@ -46,10 +46,6 @@ struct SpaceProblemReference {
     std::optional<SpaceInputFacts> inputs = {};
 };
 
-/// What a flight in space costs. Empty where the objective counts length or clearance, which flights in space do not
-/// sum up yet.
-[[nodiscard]] DOWNWASH_EXPORT std::optional<double> cost_of(const SpaceFlight& flight, const CostFunction& objective);
-
 /// The greatest error of all goals of a flight [m].
 [[nodiscard]] DOWNWASH_EXPORT double worst_goal_error_m(const SpaceFlight& flight) noexcept;
 

@@ -79,16 +79,6 @@ Json execution_json(const SpaceSolution& solution) {
 
 }  // namespace
 
-std::optional<double> cost_of(const SpaceFlight& flight, const CostFunction& objective) {
-    if (objective.weight(Objective::length) > 0 || objective.weight(Objective::clearance) > 0) {
-        return std::nullopt;
-    }
-    CostFigures figures;
-    figures.energy_j = flight.energy_j;
-    figures.time_s = flight.duration_s;
-    return objective(figures);
-}
-
 double worst_goal_error_m(const SpaceFlight& flight) noexcept {
     double worst_m = 0;
     for (const SpaceGoalVisit& visit : flight.goals) {

@@ -1,8 +1,10 @@
 #include "downwash/simulation/space_facets.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/scene/solid_surface.hpp"
 #include "downwash/simulation/space_touch_place.hpp"
@@ -37,6 +39,21 @@ std::vector<Facet> facets_of(const SpaceContactGoal& goal, const std::vector<Obs
         }
     }
     return facets;
+}
+
+Vector3 Facet::nearest_m(const Vector3& to_m) const {
+    const Vector3 off_m = to_m - corner_m;
+    const double a = dot(first_m, first_m), b = dot(first_m, second_m), c = dot(second_m, second_m);
+    const double d = dot(first_m, off_m), e = dot(second_m, off_m);
+    const double determinant = a * c - b * b;
+    double s = std::max(0.0, (c * d - b * e) / determinant);
+    double t = std::max(0.0, (a * e - b * d) / determinant);
+    if (s + t > 1) {
+        const double sum = s + t;
+        s /= sum;
+        t /= sum;
+    }
+    return corner_m + s * first_m + t * second_m;
 }
 
 }  // namespace downwash::simulation

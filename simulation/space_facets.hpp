@@ -16,6 +16,10 @@ struct Facet {
     Vector3 n;
     double area_until_m2;  ///< of this one and all before
     bool has_two_sides;
+
+    [[nodiscard]] Vector3 middle_m() const { return corner_m + (1.0 / 3) * (first_m + second_m); }
+    /// A point of it about as near to another point as any.
+    [[nodiscard]] Vector3 nearest_m(const Vector3& to_m) const;
 };
 
 /// The triangles of some obstacles that a contact may touch: near enough to its place, and facing down where the frame

@@ -8,128 +8,26 @@
 #include <vector>
 
 #include "downwash/base/direction.hpp"
-#include "downwash/base/infinity.hpp"
 #include "downwash/base/lane_math.hpp"
 #include "downwash/simulation/flight_rules.hpp"
 #include "downwash/simulation/goal.hpp"
-#include "downwash/simulation/space_rules.hpp"
-#include "downwash/simulation/space_touch_flight.hpp"
+#include "downwash/simulation/space_flying.hpp"
 
 namespace downwash {
 namespace {
 
 using simulation::SpaceLoop;
 
-/// Few: among thousands of obstacles a tick takes milliseconds.
-constexpr std::int64_t ticks_between_questions = 8;
-
-double tracking_error_m(const SpaceMotion& motion, const SpacePoint& reference) {
-    return simulation::space_tracking_error_m(motion.position_m.data(), reference.position);
+/// @param none what acts where the settings say nothing; outlives the loop
+std::unique_ptr<SpaceLoop> made_loop(const SpaceRobot& robot, const SpaceFlightSettings& settings,
+                                     simulation::NoEffectInSpace& none) {
+    simulation::SpaceEffect& effect = settings.effect != nullptr ? *settings.effect : none;
+    return simulation::make_space_loop({robot, settings.world, effect, settings.aero, settings.is_refined});
 }
 
-/// Whether a vehicle is lost.
-class Stability {
- public:
-    [[nodiscard]] bool is_lost(const SpaceLoop& loop, const SpaceMotion& motion, const SpacePoint& reference) {
-        const bool is_upright =
-            simulation::cosine_of_tilt(motion.attitude.data()) > lane::sin_cos(unstable_pitch_rad).cosine;
-        const bool falls_over = was_upright_ && !is_upright;
-        was_upright_ = was_upright_ || is_upright;
-        // A number that is not finite is beyond every limit.
-        return falls_over || !loop.is_within(max_state) || !(tracking_error_m(motion, reference) <= unstable_error_m);
-    }
-
- private:
-    bool was_upright_ = false;
-};
-
-/// Rules, rows and figures of one flight.
-class Recorder {
- public:
-    Recorder(SpaceLoop& loop, const SpaceFlightSettings& settings, double tick_s, SpaceFlight& flight)
-        : loop_(loop), settings_(settings), tick_s_(tick_s), flight_(flight) {}
-
-    /// From here on the vehicle is in a touch: obstacles see it a little off the surface. nullptr: no longer.
-    void expect(const simulation::SpaceTouchFlight* touch) { touch_ = touch; }
-
-    /// Looks at a new state.
-    Rejection judge(const SpacePoint& reference) {
-        const SpaceMotion motion = loop_.motion();
-        flight_.max_tracking_error_m = std::max(flight_.max_tracking_error_m, tracking_error_m(motion, reference));
-        if (stability_.is_lost(loop_, motion, reference)) {
-            return Rejection::unstable;
-        }
-        if (settings_.checker != nullptr) {
-            SpacePose pose = among_obstacles(motion, settings_.world);
-            clearance_m_ = settings_.checker->clearance_m(pose);
-            double checked_m = clearance_m_;
-            if (touch_ != nullptr) {
-                pose = touch_->off_surface(pose);
-                checked_m = settings_.checker->clearance_m(pose);
-            } else {
-                flight_.min_clearance_m = std::min(flight_.min_clearance_m, clearance_m_);
-            }
-            const bool touches =
-                checked_m <= 0 || (before_ && settings_.checker->comes_nearer_between(*before_, pose, 0));
-            before_ = pose;
-            if (touches) {
-                flight_.min_clearance_m = std::min(flight_.min_clearance_m, 0.0);
-                return Rejection::collision;
-            }
-        }
-        return loop_.is_flyable() ? Rejection::none : Rejection::flyable_area;
-    }
-
-    /// Adds the row of a state. @param row with the commands of the tick that begins there
-    Rejection add(SpaceFlightRow row) {
-        row.t_s = static_cast<double>(flight_.rows.size()) * tick_s_;
-        row.clearance_m = clearance_m_;
-        const bool is_usable = is_in_range(row);
-        if (!is_usable) {
-            std::fill(std::begin(row.rotor_command_n), std::end(row.rotor_command_n), 0.0);
-            std::fill(std::begin(row.joint_torque_nm), std::end(row.joint_torque_nm), 0.0);
-            row.saturation = max_result;
-            row.power_w = 0;
-        }
-        flight_.max_saturation = std::max(flight_.max_saturation, row.saturation);
-        flight_.rows.push_back(row);
-        return is_usable ? Rejection::none : Rejection::unstable;
-    }
-
- private:
-    static bool is_in_range(SpaceFlightRow row) {
-        row.clearance_m = std::isinf(row.clearance_m) ? 0 : row.clearance_m;
-        return are_within(row, max_result);
-    }
-
-    SpaceLoop& loop_;
-    const SpaceFlightSettings& settings_;
-    double tick_s_;
-    SpaceFlight& flight_;
-    Stability stability_;
-    double clearance_m_ = infinity;
-    std::optional<SpacePose> before_;
-    const simulation::SpaceTouchFlight* touch_ = nullptr;
-};
-
-/// @return false if the vehicle does not stay stable
-bool settle(const SpaceRobot& robot, SpaceLoop& loop, const SpaceMotion& start) {
-    SpacePoint here;
-    std::copy(start.position_m.begin(), start.position_m.end(), here.position);
-    const auto& q = start.attitude;
-    here.position[space::yaw] = lane::atan2(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
-    std::copy(start.joints_rad.begin(), start.joints_rad.end(), here.position + space::first_joint);
-    Stability stability;
-    const std::int64_t ticks = std::llround(settling_before_start_s * robot.controller.rate_hz);
-    for (std::int64_t tick = 0; tick < ticks; ++tick) {
-        SpaceFlightRow row;
-        loop.quiet_tick(here, row);
-        if (stability.is_lost(loop, loop.motion(), here)) {
-            return false;
-        }
-    }
-    loop.forget();
-    return true;
+/// Whether a touch came to its end, as it should or not.
+bool is_over(const SpaceTouchRecord& touch) {
+    return touch.end != SpaceTouchEnd::cut_short && touch.end != SpaceTouchEnd::too_deep;
 }
 
 /// Whether a further goal is met throughout the last second.
@@ -220,13 +118,8 @@ SpaceFlight fly(const SpaceRobot& robot, const SpacePlan& plan, const SpaceMotio
                 const SpaceFlightSettings& settings) {
     assert(!plan.reference.empty() && plan.joints == robot.joints());
     SpaceFlight flight;
-    flight.joints = robot.joints();
-    flight.rotor_count = static_cast<int>(robot.plant.rotors.size());
-    flight.has_rotor_lag = robot.plant.time_constant_s > 0;
-    flight.min_clearance_m = infinity;
     simulation::NoEffectInSpace none;
-    simulation::SpaceEffect& effect = settings.effect != nullptr ? *settings.effect : none;
-    const auto loop = simulation::make_space_loop({robot, settings.world, effect, settings.aero, settings.is_refined});
+    const auto loop = made_loop(robot, settings, none);
     loop->start(start);
     const double tick_s = 1 / robot.controller.rate_hz;
     std::vector<FlownHover> hovers;
@@ -237,86 +130,26 @@ SpaceFlight fly(const SpaceRobot& robot, const SpacePlan& plan, const SpaceMotio
     }
     const std::int64_t ticks =
         hovers.empty() ? plan.reference.back().tick + settings.hold_ticks : hovers.back().hover.end_tick;
-    Recorder recorder(*loop, settings, tick_s, flight);
-    SpacePoint reference = plan.at(0);
-    Rejection rejection = settings.settles && !settle(robot, *loop, start) ? Rejection::unstable : Rejection::none;
-    if (rejection == Rejection::none) {
-        rejection = recorder.judge(reference);
+    simulation::SpaceFlying flying(robot, settings, *loop, plan.at(0), flight);
+    if (settings.settles) {
+        flying.settle(start);
     }
-    // One tick: `move` takes the vehicle on, and says the reference at its end.
-    double contact_force_n = 0;
-    const auto fly_tick = [&](const auto& move) {
-        const auto flown = static_cast<std::int64_t>(flight.rows.size());
-        if (flown % ticks_between_questions == 0) {
-            throw_if_over(settings.is_over);
-        }
-        SpaceFlightRow row;
-        row.reference = reference;
-        row.contact_force_n = contact_force_n;
-        loop->describe(row);
-        const SpacePoint next = move(settings.first_tick + flown, row);
-        rejection = recorder.add(row);
-        if (rejection == Rejection::none && settings.after_tick) {
-            rejection = settings.after_tick(flight.rows.back());
-        }
-        reference = next;
-        if (rejection == Rejection::none) {
-            rejection = recorder.judge(reference);
-        }
-    };
-    const auto fly_touch = [&](FlownHover& flown) {
-        simulation::SpaceTouchFlight touch(robot, *flown.hover.touch, settings.world, reference);
-        recorder.expect(&touch);
-        reference = touch.reference();
-        while (!touch.is_over() && rejection == Rejection::none) {
-            fly_tick([&](std::int64_t number, SpaceFlightRow& row) {
-                dynamics::SpaceContactRecord seen;
-                const double before_j = loop->energy_j();
-                loop->touching_tick(number, reference, touch.contact(), touch.is_at_surface(), row, seen);
-                const double end_s = static_cast<double>(flight.rows.size() + 1) * tick_s;
-                touch.saw(seen, loop->motion(), end_s, loop->energy_j() - before_j);
-                contact_force_n = seen.normal_impulse_n_s / tick_s;
-                return touch.reference();
-            });
-            if (rejection == Rejection::none && touch.is_too_deep()) {
-                rejection = Rejection::collision;
-            }
-        }
-        recorder.expect(nullptr);
-        contact_force_n = 0;
-        flown.touch = touch.record(rejection == Rejection::none);
-        if (rejection == Rejection::none) {
-            flown.after_row = static_cast<std::int64_t>(flight.rows.size());
-            rejection = flown.touch->is_met ? Rejection::none : Rejection::goal_missed;
-        }
-    };
+    flying.begin();
+    const auto goes_on = [&flying] { return flying.rejection() == Rejection::none; };
     auto next_hover = hovers.begin();
-    for (std::int64_t tick = 0; tick < ticks && rejection == Rejection::none; ++tick) {
-        fly_tick([&](std::int64_t number, SpaceFlightRow& row) {
-            loop->tick(number, reference, row);
-            return plan.at(tick + 1);
-        });
-        if (rejection == Rejection::none && next_hover != hovers.end() && next_hover->hover.end_tick == tick + 1) {
-            next_hover->row = static_cast<std::int64_t>(flight.rows.size());
-            if (next_hover->hover.touch) {
-                fly_touch(*next_hover);
-            }
-            ++next_hover;
+    for (std::int64_t tick = 0; tick < ticks && goes_on(); ++tick) {
+        flying.tick(plan.at(tick + 1));
+        if (!goes_on() || next_hover == hovers.end() || next_hover->hover.end_tick != tick + 1) {
+            continue;
+        }
+        FlownHover& flown = *next_hover++;
+        flown.row = flying.ticks();
+        if (flown.hover.touch) {
+            flown.touch = flying.touch(*flown.hover.touch);
+            flown.after_row = is_over(*flown.touch) ? flying.ticks() : -1;
         }
     }
-    // What the controller commands at the end is part of the last row; nothing is flown with it.
-    if (flight.rows.empty() || loop->is_within(max_state)) {
-        SpaceFlightRow row;
-        row.reference = reference;
-        row.contact_force_n = contact_force_n;
-        loop->look(reference, row);
-        loop->describe(row);
-        static_cast<void>(recorder.add(row));
-    }
-    flight.rejection = rejection;
-    flight.outcome = outcome_of(rejection);
-    flight.energy_j = flight.rows.back().energy_j;
-    flight.duration_s = flight.rows.back().t_s;
+    flying.end();
     if (settings.goals != nullptr) {
         judge_goals(*settings.goals, settings.world, tick_s, hovers, flight);
     }
@@ -327,6 +160,31 @@ SpaceFlight fly(const SpaceRobot& robot, const SpacePlan& plan, const SpaceMotio
         flight.outcome = Outcome::over_budget;
     }
     return flight;
+}
+
+SpaceTouchFlown fly_touch(const SpaceRobot& robot, const SpaceGoalRule& rule, const SpaceGoalHover& hover,
+                          const SpacePoint& at, AnySpaceState& vehicle, const SpaceFlightSettings& settings) {
+    assert(hover.touch);
+    SpaceFlight flight;
+    simulation::NoEffectInSpace none;
+    const auto loop = made_loop(robot, settings, none);
+    loop->take_over(vehicle);
+    simulation::SpaceFlying flying(robot, settings, *loop, at, flight);
+    flying.begin();
+    if (flying.rejection() == Rejection::none) {
+        static_cast<void>(flying.touch(*hover.touch));
+    }
+    const std::int64_t ticks = flying.ticks();
+    flying.end();
+    vehicle = loop->state();
+    if (flight.rejection == Rejection::none) {
+        SpaceGoalVisit after;
+        after.is_met = true;
+        const std::int64_t settling = std::llround(goal_settling_s * robot.controller.rate_hz);
+        add_rows(rule, hover, settings.world, flight, ticks, settling, after);
+        flight.rejection = after.is_met ? Rejection::none : Rejection::goal_missed;
+    }
+    return {flight.rejection, ticks};
 }
 
 }  // namespace downwash

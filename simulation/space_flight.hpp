@@ -10,6 +10,7 @@
 #include "downwash/controllers/space_reference.hpp"
 #include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/flight_sums.hpp"
 #include "downwash/simulation/space_goal_rule.hpp"
 #include "downwash/simulation/space_loop.hpp"
 
@@ -27,6 +28,8 @@ struct SpaceFlightSettings {
     /// Whether the vehicle has hovered at its start for settling_before_start_s in this world, without noise and gusts.
     /// The start is then at rest.
     bool settles = false;
+    /// Whether rows have their clearance; false: it counts as infinite, and takes no time.
+    bool measures_clearance = true;
     bool is_refined = true;  ///< as many Runge-Kutta steps as a tick needs; false: equal ones, as in planning
     /// The goals that the flight has to meet, slowly and throughout the last second of the plan's hover for each;
     /// nullptr: none. A contact follows its hover: the plan waits until the vehicle is back from the touch.
@@ -41,10 +44,11 @@ struct SpaceFlightSettings {
 };
 
 /// A plan flown from start to the end of the hold.
-struct SpaceFlight {
+struct SpaceFlight : FlightSums {
     Outcome outcome = Outcome::ok;
     Rejection rejection = Rejection::none;  ///< why it ended early
     double min_clearance_m = 0;             ///< at ticks; infinity without obstacles; touches do not count
+    double clearance_integral = 0;          ///< see SpaceSegmentFlight
     double energy_j = 0;
     double duration_s = 0;
     double max_tracking_error_m = 0;
@@ -73,5 +77,20 @@ struct SpaceFlight {
 /// @pre space_robot_errors(robot) is empty, the plan has at least one knot, the robot's number of joints and its tick
 [[nodiscard]] DOWNWASH_EXPORT SpaceFlight fly(const SpaceRobot& robot, const SpacePlan& plan, const SpaceMotion& start,
                                               const SpaceFlightSettings& settings = {});
+
+/// How a touch was flown.
+struct SpaceTouchFlown {
+    Rejection rejection = Rejection::none;  ///< goal_missed where the touch is not met, or the hover after it
+    std::int64_t ticks = 0;
+};
+
+/// Flies the touch that follows a hover as fly() does, with a vehicle that comes from another flight.
+/// @param rule of the hover's goal   @param hover with a touch   @param at reference of the hover
+/// @param[in,out] vehicle at the end of the hover; then at the end of the touch
+/// @param settings without a plan: settles, hold_ticks, goals, further goal and budget do not count
+/// @throws as fly()   @pre the robot is that of the vehicle, the world that of its flight
+[[nodiscard]] DOWNWASH_EXPORT SpaceTouchFlown fly_touch(const SpaceRobot& robot, const SpaceGoalRule& rule,
+                                                        const SpaceGoalHover& hover, const SpacePoint& at,
+                                                        AnySpaceState& vehicle, const SpaceFlightSettings& settings);
 
 }  // namespace downwash

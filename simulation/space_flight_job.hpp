@@ -2,29 +2,31 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/space_segment.hpp"
 #include "downwash/simulation/flight_rules.hpp"
-#include "downwash/simulation/space_vehicle.hpp"
+#include "downwash/simulation/flight_sums.hpp"
+#include "downwash/simulation/space_flight_state.hpp"
 #include "downwash/simulation/space_world_description.hpp"
 
 namespace downwash {
-
-/// Everything about a vehicle in space that changes in flight, whatever its number of joints: what belongs to joints
-/// that it lacks is 0. The law's memory is that of the vehicle's own number of joints.
-using AnySpaceState = simulation::SpaceFlightState<double, max_joints>;
 
 /// Whether two vehicles have the same state and memory to the last bit.
 [[nodiscard]] DOWNWASH_EXPORT bool is_same(const AnySpaceState& a, const AnySpaceState& b) noexcept;
 
 /// The outcome of a flight along one segment in space.
-struct SpaceSegmentFlight {
+struct SpaceSegmentFlight : FlightSums {
     Rejection rejection = Rejection::none;
     std::int64_t ticks = 0;           ///< simulated, the rejected one included
     double max_tracking_error_m = 0;  ///< at ticks, the start included
     double max_saturation = 0;        ///< greatest demand over its limit; above 1 something was clipped
+    double max_tilt_rate_rad_s = 0;   ///< of roll and pitch together, at ends of ticks
+    double clearance_integral = 0;    ///< integral of clearance_density() over time [s/m], when measured
+    /// Least clearance since the job began, as well as it is found; infinite where nobody asked, or without obstacles.
+    double min_clearance_m = std::numeric_limits<double>::infinity();
 };
 
 /// One segment of a planned flight in space, and its outcome.

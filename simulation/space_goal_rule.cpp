@@ -45,24 +45,32 @@ struct SpaceGoalRule::Impl {
         double hold_s = 0;
         FoundTouch found;
     };
-    [[nodiscard]] Fit fit(std::size_t number, const SpacePoint& point) const {
-        const SpacePose pose = level_at(configuration_of(point));
-        std::optional<Fit> best;
-        const std::span<const SpaceGoal> all = alternatives(goals[number]);
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            Fit one{goal_error(all[i], robot, pose, *scene), all[i].hold_s, {}};
-            if (const auto* contact = std::get_if<SpaceContactGoal>(&all[i].kind)) {
-                one.found = find_touch(*contact, all[i].hold_s, robot, pose, *touched[number][i]);
-                one.hold_s = touch_hover_s;
-                if (one.found.touch) {
-                    one.error = goal_error(*one.found.touch, robot, pose);
-                }
+    /// @param i number of an alternative of the goal; 0 of one without
+    [[nodiscard]] Fit fit(std::size_t number, std::size_t i, const SpacePose& pose) const {
+        const SpaceGoal& goal = alternatives(goals[number])[i];
+        Fit one{goal_error(goal, robot, pose, *scene), goal.hold_s, {}};
+        if (const auto* contact = std::get_if<SpaceContactGoal>(&goal.kind)) {
+            one.found = find_touch(*contact, goal.hold_s, robot, pose, *touched[number][i]);
+            one.hold_s = touch_hover_s;
+            if (one.found.touch) {
+                one.error = goal_error(*one.found.touch, robot, pose);
+            } else {
+                one.error.distance_m = one.found.away_m;
             }
-            if (!best || is_less(one.error, best->error)) {
+        }
+        return one;
+    }
+    [[nodiscard]] Fit fit(std::size_t number, const SpaceConfiguration& at) const {
+        const SpacePose pose = level_at(at);
+        Fit best = fit(number, 0, pose);
+        for (std::size_t i = 1; i < touched[number].size(); ++i) {
+            Fit one = fit(number, i, pose);
+            const bool is_as_good = !is_less(best.error, one.error);
+            if (is_less(one.error, best.error) || (is_as_good && one.error.distance_m < best.error.distance_m)) {
                 best = std::move(one);
             }
         }
-        return *best;
+        return best;
     }
 };
 
@@ -111,7 +119,7 @@ std::vector<SpaceGoalHover> SpaceGoalRule::hovers(const SpacePlan& plan) const {
             continue;
         }
         for (std::size_t k = 0; k < (own.in_any_order ? left.size() : 1); ++k) {
-            Impl::Fit fit = own.fit(left[k], to.point);
+            Impl::Fit fit = own.fit(left[k], configuration_of(to.point));
             if (is_met(fit.error) && to.tick - from.tick >= ticks(fit.hold_s)) {
                 hovers.push_back({left[k], to.tick, std::move(fit.found.touch), std::move(fit.found.reason)});
                 left.erase(left.begin() + static_cast<std::ptrdiff_t>(k));
@@ -123,7 +131,7 @@ std::vector<SpaceGoalHover> SpaceGoalRule::hovers(const SpacePlan& plan) const {
     std::optional<Impl::Fit> best;
     std::size_t goal = 0;
     for (std::size_t k = 0; k < (own.in_any_order ? left.size() : 1); ++k) {
-        Impl::Fit fit = own.fit(left[k], last.point);
+        Impl::Fit fit = own.fit(left[k], configuration_of(last.point));
         if (!best || is_less(fit.error, best->error)) {
             best = std::move(fit);
             goal = left[k];
@@ -132,6 +140,27 @@ std::vector<SpaceGoalHover> SpaceGoalRule::hovers(const SpacePlan& plan) const {
     hovers.push_back(
         {goal, last.tick + ticks(best->hold_s), std::move(best->found.touch), std::move(best->found.reason)});
     return hovers;
+}
+
+SpaceGoalHover SpaceGoalRule::hover_at(std::size_t goal, const SpacePoint& point) const {
+    if (std::ranges::none_of(impl_->touched[goal], [](const auto& named) { return named != nullptr; })) {
+        return {goal, 0, {}, {}};
+    }
+    Impl::Fit fit = impl_->fit(goal, configuration_of(point));
+    return {goal, 0, std::move(fit.found.touch), std::move(fit.found.reason)};
+}
+
+std::vector<SpaceGoalError> SpaceGoalRule::errors_at(std::size_t goal, const SpaceConfiguration& at) const {
+    const SpacePose pose = level_at(at);
+    std::vector<SpaceGoalError> errors;
+    for (std::size_t i = 0; i < impl_->touched[goal].size(); ++i) {
+        errors.push_back(impl_->fit(goal, i, pose).error);
+    }
+    return errors;
+}
+
+SpaceGoalError SpaceGoalRule::error_at(std::size_t goal, const SpaceConfiguration& at) const {
+    return impl_->fit(goal, at).error;
 }
 
 SpaceGoalError SpaceGoalRule::error(const SpaceGoalHover& hover, const SpaceMotion& motion,

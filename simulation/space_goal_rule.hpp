@@ -10,6 +10,7 @@
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/space_reference.hpp"
 #include "downwash/scene/scene.hpp"
+#include "downwash/simulation/space_configuration.hpp"
 #include "downwash/simulation/space_goal.hpp"
 #include "downwash/simulation/space_goal_error.hpp"
 #include "downwash/simulation/space_loop.hpp"
@@ -48,6 +49,16 @@ class DOWNWASH_EXPORT SpaceGoalRule {
     /// A hover before a touch lasts touch_hover_s; the touch itself has the goal's hold.
     /// @pre the plan has a knot
     [[nodiscard]] std::vector<SpaceGoalHover> hovers(const SpacePlan& plan) const;
+
+    /// The hover of one of the goals at a point of a reference, without its end.
+    [[nodiscard]] SpaceGoalHover hover_at(std::size_t goal, const SpacePoint& point) const;
+
+    /// How far the level vehicle is from each alternative of a goal, or from the goal if it has none. A contact is met
+    /// where the vehicle waits for a touch. Where there is none, a share without end of its tolerance is used, and
+    /// the distance is the least way to where there could be one.
+    [[nodiscard]] std::vector<SpaceGoalError> errors_at(std::size_t goal, const SpaceConfiguration& at) const;
+    /// The error from the alternative whose tolerances it uses least, or which is nearest.
+    [[nodiscard]] SpaceGoalError error_at(std::size_t goal, const SpaceConfiguration& at) const;
 
     /// How far a vehicle is from the goal of a hover; among alternatives from the one whose tolerances it uses least.
     [[nodiscard]] SpaceGoalError error(const SpaceGoalHover& hover, const SpaceMotion& motion,

@@ -392,21 +392,39 @@ struct SpaceGoalSampler::Impl {
         }
     }
 
+    /// The facets of a surface that are nearest to a point, at most so many.
+    [[nodiscard]] static std::vector<const Facet*> facets_near(const One& one, const Vector3& to_m, std::size_t most) {
+        std::vector<std::pair<double, const Facet*>> all;
+        for (const Facet& facet : one.facets) {
+            all.emplace_back(length_of(facet.nearest_m(to_m) - to_m), &facet);
+        }
+        const auto end = all.begin() + static_cast<std::ptrdiff_t>(std::min(most, all.size()));
+        std::partial_sort(all.begin(), end, all.end());
+        std::vector<const Facet*> near;
+        std::transform(all.begin(), end, std::back_inserter(near), [](const auto& each) { return each.second; });
+        return near;
+    }
+
     template <class Visit>
     void each_near(const SpaceContactGoal& goal, const One& one, const SpaceConfiguration& from, const Heading& start,
                    double share, const Visit& visit) const {
-        constexpr std::size_t most_facets = 64;
+        constexpr std::size_t most_facets = 8;
         const Vector3 end_m = end_of(from);
-        const std::size_t stride = 1 + one.facets.size() / most_facets;
-        for (std::size_t i = 0; i < one.facets.size(); i += stride) {
-            const Facet& facet = one.facets[i];
+        for (const Facet* each : facets_near(one, end_m, most_facets)) {
+            const Facet& facet = *each;
             const double above_m = dot(end_m - facet.corner_m, facet.n);
             const Vector3 n = facet.has_two_sides && above_m < 0 ? -1 * facet.n : facet.n;
-            const Vector3 middle_m = facet.corner_m + (1.0 / 3) * (facet.first_m + facet.second_m);
-            const Vector3 surface_m =
-                goal.position_m ? *goal.position_m - dot(*goal.position_m - facet.corner_m, n) * n : middle_m;
             const auto place = [&](const Heading& heading) {
-                if (const Found found = before_touch(goal, one, heading, surface_m, n, share)) {
+                // The nearest point may be at an edge, where nothing can be touched; the middle is the farthest from
+                // all edges.
+                const Vector3 wanted_m = goal.position_m.value_or(end_m);
+                const Vector3 on_plane_m = wanted_m - dot(wanted_m - facet.corner_m, n) * n;
+                Found found =
+                    before_touch(goal, one, heading, goal.position_m ? on_plane_m : facet.nearest_m(end_m), n, share);
+                if (!found && !goal.position_m) {
+                    found = before_touch(goal, one, heading, facet.middle_m(), n, share);
+                }
+                if (found) {
                     visit(*found);
                 }
             };

@@ -21,6 +21,8 @@ template <class T>
 struct BasicSpaceSums {
     T max_tracking_error_m{};  ///< distance from the reference
     T max_saturation{};        ///< greatest demand over its limit
+    T max_tilt_rate_rad_s{};   ///< of the multirotor's roll and pitch together, at ends of ticks
+    T length_m{};              ///< see FlightSums
 };
 
 /// Where the vehicles of all lanes were at one tick.

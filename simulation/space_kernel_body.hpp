@@ -328,6 +328,8 @@ void fly_space_group(const SpaceKernelModel<n>& model, SpaceLanes<n>& lanes, con
         move_lanes<n>(model, world, plant, gust, state->plant, given.command, field, next->plant);
         pass_gusts(world, noise, gust);
         track.pass(state->plant);
+        const auto moved = [&](int axis) { return next->plant.q[axis] - state->plant.q[axis]; };
+        sums.length_m = sums.length_m + sqrt(moved(0) * moved(0) + moved(1) * moved(1) + moved(2) * moved(2));
         state = next;
         tick = tick + Pack(1);
         reference = space_reference_at(group, lanes, tick, Pack(model.tick.tick_s));
@@ -335,6 +337,7 @@ void fly_space_group(const SpaceKernelModel<n>& model, SpaceLanes<n>& lanes, con
         const Pack error_m = space_tracking_error_m(q, reference.position);
         sums.max_tracking_error_m = lane::max(sums.max_tracking_error_m, error_m);
         sums.max_saturation = lane::max(sums.max_saturation, given.saturation);
+        sums.max_tilt_rate_rad_s = lane::max(sums.max_tilt_rate_rad_s, tilt_rate_rad_s(state->plant.u));
         const PackMask is_upright = cosine_of_tilt(q + 3) > least_cosine;
         const PackMask is_sound = is_within(state->plant, Pack(model.max_state)) & (error_m <= Pack(unstable_error_m)) &
                                   (given.saturation <= Pack(model.max_result)) & (is_upright | !was_upright);

@@ -10,45 +10,14 @@
 #include "downwash/simulation/lane_flight.hpp"
 #include "downwash/simulation/space_flight.hpp"
 #include "downwash/simulation/space_flight_job.hpp"
+#include "downwash/simulation/space_flight_state.hpp"
 #include "downwash/simulation/space_kernel.hpp"
+#include "downwash/simulation/space_looks.hpp"
 #include "downwash/simulation/space_loop_of.hpp"
 #include "downwash/simulation/space_pool_setup.hpp"
 #include "downwash/simulation/space_rules.hpp"
 
 namespace downwash::simulation {
-
-/// Copies what vehicles with different numbers of joints have in common. What belongs to other joints stays.
-template <int from, int to>
-void copy_common(const SpaceFlightState<double, from>& state, SpaceFlightState<double, to>& out) {
-    constexpr int joints = std::min(from, to);
-    constexpr int memory =
-        std::min(number_count<double, SpaceLawMemory<double, from>>, number_count<double, SpaceLawMemory<double, to>>);
-    const auto copy_motion = [](const auto& then, auto& past) {
-        std::copy_n(then.q, dynamics::space_coordinates<joints>, past.q);
-        std::copy_n(then.u, dynamics::space_speeds<joints>, past.u);
-    };
-    copy_motion(state.plant, out.plant);
-    std::copy_n(state.plant.thrust_n, max_rotors, out.plant.thrust_n);
-    out.plant.energy_j = state.plant.energy_j;
-    std::copy_n(state.memory.number, memory, out.memory.number);
-    for (int i = 0; i < recent_ticks; ++i) {
-        copy_motion(state.world.past[i], out.world.past[i]);
-    }
-    std::copy_n(state.world.gust, 5, out.world.gust);
-    out.world.older.resize(state.world.older.size());
-    for (std::size_t i = 0; i < state.world.older.size(); ++i) {
-        copy_motion(state.world.older[i], out.world.older[i]);
-    }
-}
-
-/// A free motion is looked for up to this [m]. A larger one lets the robot fly farther before the next check; a smaller
-/// one is found faster.
-inline constexpr double max_free_motion_m = 0.5;
-
-/// How much free motion is left aside: distances are exact to 1e-8 m by our own geometry, good to a millimetre by FCL.
-[[nodiscard]] inline double free_motion_error_m(CollisionCheckerKind kind) noexcept {
-    return kind == CollisionCheckerKind::own ? 1e-7 : 0.002;
-}
 
 /// What the flights of a pool have in common.
 template <int n>
@@ -86,6 +55,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         lanes_->is_active[number_] = 1;
         lanes_->tick[number_] = 0;
         free_ = {};
+        min_clearance_m_ = std::numeric_limits<double>::infinity();
         begin_leg();
         if (const Rejection rejection = rejection_at_start(); rejection != Rejection::none) {
             end_with(rejection);
@@ -105,6 +75,8 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         world_ = other.world_;
         looked_at_ = other.looked_at_;
         free_ = other.free_;
+        min_clearance_m_ = other.min_clearance_m_;
+        hover_ = other.hover_;
         lanes_->is_active[other.number_] = 0;
     }
 
@@ -120,6 +92,8 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         const auto sums = read<BasicSpaceSums<double>>(lanes_->sums);
         leg.flight.max_tracking_error_m = sums.max_tracking_error_m;
         leg.flight.max_saturation = sums.max_saturation;
+        leg.flight.max_tilt_rate_rad_s = sums.max_tilt_rate_rad_s;
+        leg.flight.length_m = sums.length_m;
         const bool is_end = leg.flight.ticks >= leg.segment.ticks();
         const bool is_due = lanes_->tick[number_] >= lanes_->ticks[number_];
         Rejection rejection = static_cast<Rejection>(static_cast<int>(lanes_->rejection[number_]));
@@ -214,7 +188,10 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         // Where the goal is judged, the kernel stops as at an end. A hover is the same point there.
         lanes_->ticks[number_] = static_cast<double>(
             is_judged_leg() ? std::max<std::int64_t>(1, segment.ticks() - job_->judged_ticks) : segment.ticks());
-        write(BasicSpaceSums<double>{space_tracking_error_m(plant().q, from.position), 0}, lanes_->sums);
+        write(BasicSpaceSums<double>{space_tracking_error_m(plant().q, from.position)}, lanes_->sums);
+        if (is_judged_leg()) {
+            hover_ = setting_->setup.goal->hover_at(0, segment.to());
+        }
     }
 
     /// The rules where a job begins.
@@ -234,7 +211,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
     }
     [[nodiscard]] bool meets_goal_now() const {
         const SpaceMotion motion = motion_of<n>(plant());
-        return meets_goal(setting_->setup.goal->error({}, motion, *description_), motion);
+        return meets_goal(setting_->setup.goal->error(hover_, motion, *description_), motion);
     }
 
     /// What speaks against a leg that was flown to its end.
@@ -243,7 +220,10 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         if (rules && !(flight.max_tracking_error_m <= rules->max_tracking_error_m)) {
             return Rejection::tracking;
         }
-        return rules && !(flight.max_saturation <= rules->max_saturation) ? Rejection::saturation : Rejection::none;
+        if (rules && !(flight.max_saturation <= rules->max_saturation)) {
+            return Rejection::saturation;
+        }
+        return rules && flight.max_tilt_rate_rad_s > rules->max_tilt_rate_rad_s ? Rejection::unstable : Rejection::none;
     }
 
     /// Bounds, joint limits, collision and flyable area at the state of now; how far the robot may move until the next
@@ -280,6 +260,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
                 moved_m = bent_m = 0;
             }
             free_m = std::min(free_m, free_.to_obstacles_m - moved_m);
+            free_m = std::min(free_m, motion_until_measured_m(*checker, pose));
             free_joint_motion_m = free_.to_itself_m - bent_m;
         }
         const VolumeMap* const map =
@@ -316,6 +297,25 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         return Rejection::none;
     }
 
+    /// Measures the clearance at a pose as far as somebody wants to know it. @return how far the robot may move until
+    /// the next time
+    double motion_until_measured_m(const SpaceChecker& checker, const SpacePose& pose) {
+        const bool adds_up = setting_->setup.measures_clearance;
+        const std::optional<ClearanceError>& finds = setting_->setup.finds_min_clearance;
+        if (!adds_up && !finds) {
+            return std::numeric_limits<double>::infinity();
+        }
+        const double clearance_m = checker.clearance_m(pose);
+        min_clearance_m_ = std::min(min_clearance_m_, clearance_m);
+        if (adds_up) {
+            if (lanes_->tick[number_] > 0) {  // the density of a tick is that at its end
+                job_->legs[leg_].flight.clearance_integral += model_->tick.tick_s * clearance_density(clearance_m);
+            }
+            return -1;
+        }
+        return std::max(clearance_m - min_clearance_m_, finds->at_m(clearance_m));
+    }
+
     [[nodiscard]] bool is_within_joint_limits() const noexcept {
         for (int i = 0; i < n; ++i) {
             const double angle_rad = lanes_->vehicle[7 + i][number_];
@@ -329,6 +329,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
     void end_with(Rejection rejection) {
         SpaceFlightLeg& leg = job_->legs[leg_];
         leg.flight.rejection = rejection;
+        leg.flight.min_clearance_m = min_clearance_m_;
         leg.end = state();
         first_tick_ += leg.flight.ticks;
         if (rejection == Rejection::none && ++leg_ < job_->legs.size()) {
@@ -345,8 +346,10 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
     SpaceTrackRow<n>* track_;
     const SpaceWorld* description_ = nullptr;
     FlownSpaceWorld<n> world_{};
-    SpacePose looked_at_;            ///< where collisions were looked for last, and
-    SpaceChecker::FreeMotion free_;  ///< how far from there none can be
+    SpacePose looked_at_;                                               ///< where collisions were looked for last, and
+    SpaceChecker::FreeMotion free_;                                     ///< how far from there none can be
+    double min_clearance_m_ = std::numeric_limits<double>::infinity();  ///< since the job began, when wanted
+    SpaceGoalHover hover_;                                              ///< of a leg that is judged
 };
 
 }  // namespace downwash::simulation

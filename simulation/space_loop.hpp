@@ -11,6 +11,7 @@
 #include "downwash/dynamics/plant.hpp"
 #include "downwash/dynamics/space_contact.hpp"
 #include "downwash/simulation/space_effect.hpp"
+#include "downwash/simulation/space_flight_state.hpp"
 #include "downwash/simulation/space_robot.hpp"
 #include "downwash/simulation/space_world.hpp"
 
@@ -80,6 +81,10 @@ class DOWNWASH_EXPORT SpaceLoop {
     /// The vehicle in a motion: its law has come to rest there, rotors carry its weight, it has spent no energy and was
     /// always in this state.
     virtual void start(const SpaceMotion& motion) = 0;
+    /// The vehicle of another flight in the same world goes on here.
+    virtual void take_over(const AnySpaceState& state) = 0;
+    /// Everything about the vehicle that changes in flight.
+    [[nodiscard]] virtual AnySpaceState state() const = 0;
     /// Forgets what the vehicle did before: from now on it was always in this state, and has spent no energy.
     virtual void forget() = 0;
 

@@ -99,6 +99,12 @@ class SpaceLoopOf final : public SpaceLoop {
         static_cast<SpaceVehicle<double, n>&>(state_) = vehicle_at(model_, motion);
         forget();
     }
+    void take_over(const AnySpaceState& state) override { copy_common(state, state_); }
+    [[nodiscard]] AnySpaceState state() const override {
+        AnySpaceState any{};
+        copy_common(state_, any);
+        return any;
+    }
     void forget() override {
         state_.plant.energy_j = 0;
         state_.world = memory_at_start(world_, state_.plant);

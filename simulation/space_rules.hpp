@@ -28,4 +28,10 @@ T cosine_of_tilt(const T* q) {
     return T(1) - T(2) * (q[1] * q[1] + q[2] * q[2]) / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
 }
 
+/// How fast a vehicle rolls and pitches together [rad/s]. @param u its speeds, body rates from the fourth on
+template <class T>
+T tilt_rate_rad_s(const T* u) {
+    return lane::sqrt(u[3] * u[3] + u[4] * u[4]);
+}
+
 }  // namespace downwash::simulation

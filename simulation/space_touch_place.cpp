@@ -153,8 +153,8 @@ bool is_flat(const Scene& obstacle, const Vector3& at_m, const Vector3& normal, 
     return true;
 }
 
-FoundTouch none(const std::string& why) {
-    return {{}, "has no place to touch: " + why};
+FoundTouch no_touch(const std::string& why, double away_m) {
+    return {{}, "has no place to touch: " + why, away_m};
 }
 
 }  // namespace
@@ -184,14 +184,20 @@ FoundTouch find_touch(const SpaceContactGoal& goal, double hold_s, const SpaceRo
             touch.points.push_back({-1, point});
         }
         if (touch.points.empty() || touch.points.size() > dynamics::max_contact_points) {
-            return none("the top of the multirotor is no box, sphere, capsule or upright cylinder, or has more than " +
-                        std::to_string(dynamics::max_contact_points) + " corners");
+            return no_touch(
+                "the top of the multirotor is no box, sphere, capsule or upright cylinder, or has more than " +
+                    std::to_string(dynamics::max_contact_points) + " corners",
+                nothing_m);
         }
     } else {
         touch.points.push_back({robot.joints() - 1, robot.plant.end_effector_m});
     }
     const Vector3 middle_m = middle_of(touch, robot, waiting);
     const double away_m = distance_m(obstacle, middle_m);
+    const Vector3 way = is_frame ? rotation_of(waiting.attitude) * Vector3{0, 0, 1} : tool_at(robot, waiting).direction;
+    const double gap_m = goal.position_m ? length_of(*goal.position_m - middle_m) : away_m;
+    const double ahead_m = goal.standoff_m + (is_frame ? 0 : beyond_tip_m(robot, waiting, way));
+    const auto none = [far_m = std::max(0.0, gap_m - ahead_m)](const std::string& why) { return no_touch(why, far_m); };
     if (!(away_m > 0 && away_m < nothing_m)) {
         return none("what should touch is inside the obstacle");
     }
@@ -203,7 +209,6 @@ FoundTouch find_touch(const SpaceContactGoal& goal, double hold_s, const SpaceRo
         return none("its surface is not flat where the robot waits");
     }
     touch.normal = (1 / steepness) * touch.normal;
-    const Vector3 way = is_frame ? rotation_of(waiting.attitude) * Vector3{0, 0, 1} : tool_at(robot, waiting).direction;
     const double angle_rad = angle_between_rad(way, -1 * touch.normal);
     if (!(angle_rad <= touch_angle_rad)) {
         return none(std::string(is_frame ? "the top of the multirotor" : "the end effector") + " points " +
@@ -231,7 +236,7 @@ FoundTouch find_touch(const SpaceContactGoal& goal, double hold_s, const SpaceRo
         touch.wanted_m = *touch.wanted_m + (beyond_m - above_m) * touch.normal;
         touch.waiting_m = *touch.wanted_m + touch.standoff_m * touch.normal;
     }
-    return {touch, ""};
+    return {touch, "", 0};
 }
 
 }  // namespace downwash

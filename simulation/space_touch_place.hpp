@@ -21,6 +21,8 @@ inline constexpr double touch_angle_rad = default_angle_tolerance_rad;
 struct FoundTouch {
     std::optional<SpaceTouch> touch;
     std::string reason;  ///< "has no place to touch: ..."; empty with a touch
+    /// Without a touch: how far what touches is from where it could wait, at least [m].
+    double away_m = 0;
 };
 
 /// The touch of a robot that waits at a pose: what touches goes to the nearest point of the obstacle, along the normal

@@ -74,10 +74,9 @@ std::string space_summary(const std::string& verdict, const SpaceSolution& solut
     text +=
         table_row("flight", fmt::format("{}, {}", name_of(flight.outcome),
                                         solution.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
-    if (const auto cost = cost_of(flight, solution.objective)) {
-        const std::string_view unit = unit_of(solution.objective);
-        text += table_row("cost", fmt::format("{:.6g}{}{} executed", *cost, unit.empty() ? "" : " ", unit));
-    }
+    const std::string_view unit = unit_of(solution.objective);
+    text += table_row(
+        "cost", fmt::format("{:.6g}{}{} executed", cost_of(flight, solution.objective), unit.empty() ? "" : " ", unit));
     text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
     text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
     text += table_row("goal error", millimetres(worst_goal_error_m(flight)));

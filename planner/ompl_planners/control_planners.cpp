@@ -55,8 +55,17 @@ ResumablePlanner prepared_planner(std::string_view algorithm, const oc::SpaceInf
 }
 
 /// The search for a plan and then for better ones, one OMPL solution at a time.
+template <class Family>
 class ControlSearch {
  public:
+    using Plan = typename Family::Plan;
+    using SteeredFlights = SteeredFlightsOf<Family>;
+    using FlightPoint = FlightPointOf<Family>;
+    using FlightStatistics = FlightStatisticsOf<Family>;
+    using Closing = ClosingOf<Family>;
+    using OmplHooks = OmplHooksOf<Family>;
+    using OmplResult = OmplResultOf<Family>;
+
     ControlSearch(const SteeredFlights& flights, const OmplHooks& hooks)
         : flights_(flights), hooks_(hooks), nearest_{flights.start()} {}
 
@@ -147,28 +156,35 @@ class ControlSearch {
 
 }  // namespace
 
-OmplResult plan_by_controls(const SteeredFlights& flights, Random& random, const OmplHooks& hooks) {
+template <class Family>
+OmplResultOf<Family> plan_by_controls(const SteeredFlightsOf<Family>& flights, Random& random,
+                                      const OmplHooksOf<Family>& hooks) {
+    using Configuration = typename Family::Configuration;
     const QuietOmpl quiet;
     const PlannerSettings& settings = flights.task().problem.planner;
     const oc::SpaceInformationPtr information = make_flight_information(flights, random);
     const auto definition = std::make_shared<ob::ProblemDefinition>(information);
     ob::ScopedState<> start(information);
-    point_of(start.get()) = flights.start();
+    point_of<Family>(start.get()) = flights.start();
     definition->addStartState(start);
     definition->setGoal(make_closing_goal(information, flights, random));
-    definition->setOptimizationObjective(make_flight_objective(information));
+    definition->setOptimizationObjective(make_flight_objective<Family>(information));
 
     const ResumablePlanner prepared = prepared_planner(settings.algorithm, information, definition, settings.seed);
     prepared.planner->setProblemDefinition(definition);
     set_parameters(*prepared.planner, settings);
     prepared.planner->setup();
-    ControlSearch search(flights, hooks);
+    ControlSearch<Family> search(flights, hooks);
     search.run(prepared, definition);
-    OmplResult result = search.result();
+    OmplResultOf<Family> result = search.result();
     if (hooks.keep_tree) {
-        result.tree = tree_of(*prepared.planner, [](const ob::State* state) { return point_of(state).rest; });
+        result.tree = tree_of<Configuration>(*prepared.planner,
+                                             [](const ob::State* state) { return point_of<Family>(state).rest; });
     }
     return result;
 }
+
+template OmplResult plan_by_controls(const SteeredFlights&, Random&, const OmplHooks&);
+template OmplResultOf<Space> plan_by_controls(const SteeredFlightsOf<Space>&, Random&, const OmplHooksOf<Space>&);
 
 }  // namespace downwash::planning

@@ -17,14 +17,17 @@ namespace downwash::planning {
 inline constexpr unsigned int max_control_steps = 8;
 
 /// State space, control space, samplers, validity and propagation. The arguments must outlive it.
-[[nodiscard]] ompl::control::SpaceInformationPtr make_flight_information(const SteeredFlights& flights, Random& random);
+template <class Family>
+[[nodiscard]] ompl::control::SpaceInformationPtr make_flight_information(const SteeredFlightsOf<Family>& flights,
+                                                                         Random& random);
 
 /// The goal: moments from which a flight can close. isSatisfied() flies.
+template <class Family>
 [[nodiscard]] ompl::base::GoalPtr make_closing_goal(const ompl::control::SpaceInformationPtr& information,
-                                                    const SteeredFlights& flights, Random& random);
+                                                    const SteeredFlightsOf<Family>& flights, Random& random);
 
-/// Makes a control of that space ask for a whole reference segment instead: from the moment at which it begins to
-/// `to`, in a single step whatever its length. So our planner's edges are controls too.
+/// Makes a control of that space, in the plane, ask for a whole reference segment instead: from the moment at which it
+/// begins to `to`, in a single step whatever its length. So our planner's edges are controls too.
 void follow(ompl::control::Control* control, const ReferencePoint& to, std::int64_t ticks);
 
 /// The reference velocity that a control of that space asks for, along each axis [m/s or rad/s].
@@ -33,7 +36,8 @@ void follow(ompl::control::Control* control, const ReferencePoint& to, std::int6
 /// Every moment of a path, one step or reference segment apart, simulated once more: OMPL keeps only those at which the
 /// control changes.
 /// @throws std::logic_error when a moment does not come out bit for bit
-[[nodiscard]] std::vector<FlightPoint> moments_along(const ompl::control::PathControl& path,
-                                                     const SteeredFlights& flights);
+template <class Family>
+[[nodiscard]] std::vector<FlightPointOf<Family>> moments_along(const ompl::control::PathControl& path,
+                                                               const SteeredFlightsOf<Family>& flights);
 
 }  // namespace downwash::planning

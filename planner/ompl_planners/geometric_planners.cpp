@@ -14,6 +14,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "downwash/controllers/space_duration.hpp"
 #include "downwash/ompl_planners/ompl_parameters.hpp"
 #include "downwash/search/free_air_cost.hpp"
 #include "downwash/search/ompl_space.hpp"
@@ -95,8 +96,13 @@ class InformedSampler : public ob::InformedSampler {
 };
 
 /// Straight motions, and the hold as part of every motion that arrives at the goal.
+template <class Family>
 class GeometricObjective : public ob::OptimizationObjective {
  public:
+    using Configuration = typename Family::Configuration;
+    using SearchSpace = typename Family::SearchSpace;
+    using FreeAirCost = FreeAirCostOf<Family>;
+
     GeometricObjective(const ob::SpaceInformationPtr& information, const FreeAirCost& cost, const SearchSpace& space)
         : ob::OptimizationObjective(information), free_air_cost_(cost), space_(space) {
         setCostToGoHeuristic([this](const ob::State* from, const ob::Goal*) {
@@ -124,30 +130,22 @@ class GeometricObjective : public ob::OptimizationObjective {
     const SearchSpace& space_;
 };
 
-std::vector<Configuration> unwrapped(og::PathGeometric& path, const SearchSpace& space, const Configuration& start) {
-    std::vector<Configuration> waypoints;
-    Configuration last = start;
-    for (std::size_t i = 0; i < path.getStateCount(); ++i) {
-        last = i == 0 ? start : space.seen_from(last, read(path.getState(static_cast<unsigned int>(i)), space));
-        waypoints.push_back(last);
-    }
-    return waypoints;
-}
-
-double cost_of(const std::vector<Configuration>& waypoints, const FreeAirCost& cost, const SearchSpace& space) {
-    double sum = 0;
-    for (std::size_t i = 1; i < waypoints.size(); ++i) {
-        sum += cost.of_motion(waypoints[i - 1], waypoints[i]);
-    }
-    return sum + cost.of_hold(waypoints.back(), space.hold_s(waypoints.back()));
-}
-
 /// The search for a path and then for better ones, one OMPL solution at a time.
+template <class Family>
 class LineSearch {
  public:
+    using Configuration = typename Family::Configuration;
+    using ReferencePoint = typename Family::ReferencePoint;
+    using SearchSpace = typename Family::SearchSpace;
+    using Plan = typename Family::Plan;
+    using SearchTask = SearchTaskOf<Family>;
+    using FreeAirCost = FreeAirCostOf<Family>;
+    using OmplHooks = OmplHooksOf<Family>;
+    using OmplResult = OmplResultOf<Family>;
+
     LineSearch(const SearchTask& task, const FreeAirCost& cost, const OmplHooks& hooks, const QueryCounts& counts)
         : task_(task), space_(task.space), free_air_cost_(cost), hooks_(hooks), counts_(counts) {
-        result_.nearest_approach_m = space_.goal_distance_m(task.problem.start.at);
+        result_.nearest_approach_m = space_.goal_distance_m(place_of(task.problem.start));
     }
 
     void run(const PreparedPlanner& prepared, const ob::ProblemDefinitionPtr& definition) {
@@ -191,19 +189,45 @@ class LineSearch {
         return is_over_;
     }
 
+    [[nodiscard]] std::vector<Configuration> unwrapped(og::PathGeometric& path) const {
+        std::vector<Configuration> waypoints{place_of(task_.problem.start)};
+        for (unsigned int i = 1; i < path.getStateCount(); ++i) {
+            waypoints.push_back(space_.seen_from(waypoints.back(), read(path.getState(i), space_)));
+        }
+        return waypoints;
+    }
+    [[nodiscard]] double cost_of(const std::vector<Configuration>& waypoints) const {
+        double sum = 0;
+        for (std::size_t i = 1; i < waypoints.size(); ++i) {
+            sum += free_air_cost_.of_motion(waypoints[i - 1], waypoints[i]);
+        }
+        return sum + free_air_cost_.of_hold(waypoints.back(), space_.hold_s(waypoints.back()));
+    }
+    /// The rest-to-rest reference through waypoints with unwrapped angles, the first at the start's motion.
+    [[nodiscard]] Plan timed_plan(const std::vector<Configuration>& waypoints) const {
+        Plan plan = task_.blank_plan;
+        plan.reference.push_back({0, reference_at(task_.problem.start)});
+        for (std::size_t i = 1; i < waypoints.size(); ++i) {
+            const ReferencePoint next = at_rest(waypoints[i]);
+            const auto& last = plan.reference.back();
+            plan.reference.push_back(
+                {last.tick + shortest_ticks(last.point, next, motion_limits_of(task_.problem), task_.tick_s), next});
+        }
+        return plan;
+    }
+
     /// Offers an exact path; of others, and of those that do not count, the one that leads nearest to the goal is kept.
     void review(const ob::ProblemDefinition& definition) {
         auto& path = *definition.getSolutionPath()->as<og::PathGeometric>();
-        const std::vector<Configuration> waypoints = unwrapped(path, space_, task_.problem.start.at);
+        const std::vector<Configuration> waypoints = unwrapped(path);
         // The planner's status counts an approximate solution as one.
         const bool is_exact =
             definition.hasExactSolution() && definition.getGoal()->isSatisfied(path.getStates().back());
-        const double cost = is_exact && better_cost_ ? *better_cost_ : cost_of(waypoints, free_air_cost_, space_);
+        const double cost = is_exact && better_cost_ ? *better_cost_ : cost_of(waypoints);
         if (has_plan() && (!is_exact || cost >= result_.cost)) {
             return;
         }
-        Plan plan =
-            timed_plan(waypoints, reference_at(task_.problem.start), task_.problem.motion, task_.model.tick().tick_s);
+        Plan plan = timed_plan(waypoints);
         const bool is_too_long = plan.reference.back().tick > max_plan_ticks;
         if (is_exact && !is_too_long && hooks_.accept(plan, cost, result_.iterations)) {
             result_.status = Status::solved;
@@ -236,29 +260,19 @@ class LineSearch {
 
 }  // namespace
 
-Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoint& start, const MotionLimits& limits,
-                double tick_s) {
-    Plan plan;
-    plan.tick_s = tick_s;
-    plan.reference.push_back({0, start});
-    for (std::size_t i = 1; i < waypoints.size(); ++i) {
-        const ReferencePoint next = at_rest(waypoints[i]);
-        const ReferenceKnot& last = plan.reference.back();
-        plan.reference.push_back({last.tick + shortest_ticks(last.point, next, limits, tick_s), next});
-    }
-    return plan;
-}
-
-GeometricResult plan_geometrically(const SearchTask& task, Random& random, const OmplHooks& hooks) {
-    const Problem& problem = task.problem;
-    const SearchSpace& space = task.space;
+template <class Family>
+GeometricResultOf<Family> plan_geometrically(const SearchTaskOf<Family>& task, Random& random,
+                                             const OmplHooksOf<Family>& hooks) {
+    using Configuration = typename Family::Configuration;
+    const auto& problem = task.problem;
+    const typename Family::SearchSpace& space = task.space;
     const QuietOmpl quiet;
     QueryCounts counts;
     // A motion is checked so densely that the margin covers what happens between two checks.
     const double step_m = std::min(max_unseen_motion_m(problem.planner.safety_margin_m), 0.1);
     const auto information = make_space_information(space, random, step_m, counts);
-    const FreeAirCost free_air_cost(task);
-    const Configuration start = problem.start.at;
+    const FreeAirCostOf<Family> free_air_cost(task);
+    const Configuration start = place_of(problem.start);
 
     const auto definition = std::make_shared<ob::ProblemDefinition>(information);
     ob::ScopedState<> start_state(information);
@@ -269,18 +283,23 @@ GeometricResult plan_geometrically(const SearchTask& task, Random& random, const
     definition->setGoal(problem.planner.algorithm == "bit-star"
                             ? make_goal_region(information, space, random, collected_goals)
                             : make_goal_region(information, space, random));
-    definition->setOptimizationObjective(std::make_shared<GeometricObjective>(information, free_air_cost, space));
+    definition->setOptimizationObjective(
+        std::make_shared<GeometricObjective<Family>>(information, free_air_cost, space));
 
     const PreparedPlanner prepared = prepared_planner(problem.planner, information, definition);
     set_parameters(*prepared.planner, problem.planner);
     prepared.planner->setup();
-    LineSearch search(task, free_air_cost, hooks, counts);
+    LineSearch<Family> search(task, free_air_cost, hooks, counts);
     search.run(prepared, definition);
-    GeometricResult result{search.result(), counts, search.discarded()};
+    GeometricResultOf<Family> result{search.result(), counts, search.discarded()};
     if (hooks.keep_tree) {
-        result.tree = tree_of(*prepared.planner, [&space](const ob::State* state) { return read(state, space); });
+        result.tree =
+            tree_of<Configuration>(*prepared.planner, [&space](const ob::State* state) { return read(state, space); });
     }
     return result;
 }
+
+template GeometricResultOf<Plane> plan_geometrically(const SearchTask&, Random&, const OmplHooks&);
+template GeometricResultOf<Space> plan_geometrically(const SearchTaskOf<Space>&, Random&, const OmplHooksOf<Space>&);
 
 }  // namespace downwash::planning

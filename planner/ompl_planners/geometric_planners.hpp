@@ -12,19 +12,17 @@ namespace downwash::planning {
 
 /// How a geometric search ended. Its cost is the variant's estimate: level hover along the reference and through the
 /// hold.
-struct GeometricResult : OmplResult {
+template <class Family>
+struct GeometricResultOf : OmplResultOf<Family> {
     QueryCounts counts;
     std::uint64_t discarded = 0;  ///< paths to the goal that did not count
 };
 
-/// For MP-ARM: OMPL's geometric planners in (x, z, arm) with the vehicle level and straight edges; blind to dynamics
-/// (thesis C.2). An iteration is one turn of the planner's own loop.
-/// Anytime planners go on for better plans; RRT-Connect ends with the first that is accepted, and begins anew after one
-/// that is not.
-[[nodiscard]] GeometricResult plan_geometrically(const SearchTask& task, Random& random, const OmplHooks& hooks);
-
-/// The rest-to-rest reference through waypoints whose arm angles are unwrapped, the first at the start's motion.
-[[nodiscard]] Plan timed_plan(const std::vector<Configuration>& waypoints, const ReferencePoint& start,
-                              const MotionLimits& limits, double tick_s);
+/// For MP-ARM: OMPL's geometric planners in (x, z, arm) or (x, y, z, yaw, joints) with the vehicle level and straight
+/// edges; blind to dynamics (thesis C.2). An iteration is one turn of the planner's own loop. Anytime planners go on
+/// for better plans; RRT-Connect ends with the first that is accepted, and begins anew after one that is not.
+template <class Family>
+[[nodiscard]] GeometricResultOf<Family> plan_geometrically(const SearchTaskOf<Family>& task, Random& random,
+                                                           const OmplHooksOf<Family>& hooks);
 
 }  // namespace downwash::planning

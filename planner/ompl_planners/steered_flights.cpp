@@ -1,6 +1,7 @@
 #include "downwash/ompl_planners/steered_flights.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 
 namespace downwash::planning {
@@ -10,24 +11,26 @@ namespace {
 constexpr double closing_range_m = 0.5;
 
 /// The vehicle at a moment, in every world.
-Fleet fleet_of(const FlightPoint& point) {
-    Fleet fleet{point.vehicle};
+template <class Family>
+FleetOf<Family> fleet_of(const FlightPointOf<Family>& point) {
+    FleetOf<Family> fleet{point.vehicle};
     fleet.insert(fleet.end(), point.others.begin(), point.others.end());
     return fleet;
 }
 
+template <class ReferencePoint>
 bool stands_still(const ReferencePoint& point) {
     return std::ranges::all_of(point.velocity, [](double rate) { return rate == 0; });
 }
 
 }  // namespace
 
-SteeredFlights::SteeredFlights(PlannedFlights& flights)
-    : flights_(flights),
-      task_(flights.task()),
-      steps_(task_.problem.axes(), flights.limits(), task_.model.tick().tick_s) {}
+template <class Family>
+SteeredFlightsOf<Family>::SteeredFlightsOf(PlannedFlights& flights)
+    : flights_(flights), task_(flights.task()), steps_(task_.space.axes(), flights.limits(), task_.tick_s) {}
 
-FlightPoint SteeredFlights::start() const {
+template <class Family>
+auto SteeredFlightsOf<Family>::start() const -> FlightPoint {
     FlightPoint point = start_point(task_);
     if (task_.worlds != nullptr) {
         point.others = task_.worlds->start;
@@ -36,7 +39,8 @@ FlightPoint SteeredFlights::start() const {
     return point;
 }
 
-FlightPoint SteeredFlights::steered(const FlightPoint& from, const double velocity[max_axes]) const {
+template <class Family>
+auto SteeredFlightsOf<Family>::steered(const FlightPoint& from, const double* velocity) const -> FlightPoint {
     FlightPoint next = from;
     next.reference = steps_.after(from.reference, velocity);
     next.rest = steps_.rest_of(next.reference);
@@ -45,7 +49,8 @@ FlightPoint SteeredFlights::steered(const FlightPoint& from, const double veloci
     return next;
 }
 
-FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double velocity[max_axes]) const {
+template <class Family>
+auto SteeredFlightsOf<Family>::stepped(const FlightPoint& from, const double* velocity) const -> FlightPoint {
     FlightPoint next = steered(from, velocity);
     if (static_cast<double>(next.ticks) + steps_.braking_ticks(next.reference) > static_cast<double>(max_plan_ticks)) {
         flights_.count_rejection("too_long");
@@ -56,7 +61,7 @@ FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double veloci
         flights_.count_rejection(left);
         return next;
     }
-    const ReferenceSegment segment(from.reference, next.reference, steps_.ticks(), task_.model.tick().tick_s);
+    const ReferenceSegment segment(from.reference, next.reference, steps_.ticks(), task_.tick_s);
     FleetJob job = flights_.job(fleet_of(from), from.ticks, {{segment}});
     flights_.fly(std::span(&job, 1));
     arrive(next, from, job);
@@ -64,7 +69,8 @@ FlightPoint SteeredFlights::stepped(const FlightPoint& from, const double veloci
 }
 
 /// Where a flight along one segment has led.
-void SteeredFlights::arrive(FlightPoint& next, const FlightPoint& from, const FleetJob& job) const {
+template <class Family>
+void SteeredFlightsOf<Family>::arrive(FlightPoint& next, const FlightPoint& from, const FleetJob& job) const {
     next.vehicle = job.jobs.front().end();
     next.is_valid = job.is_accepted();
     if (next.is_valid) {
@@ -74,16 +80,19 @@ void SteeredFlights::arrive(FlightPoint& next, const FlightPoint& from, const Fl
     }
 }
 
-FlightPoint SteeredFlights::stepped_again(const FlightPoint& from, const double velocity[max_axes]) const {
+template <class Family>
+auto SteeredFlightsOf<Family>::stepped_again(const FlightPoint& from, const double* velocity) const -> FlightPoint {
     const FlightPoint next = steered(from, velocity);
     FlightPoint flown = followed(from, next.reference, steps_.ticks());
     flown.rest = next.rest;
     return flown;
 }
 
-FlightPoint SteeredFlights::followed(const FlightPoint& from, const ReferencePoint& to, std::int64_t ticks) const {
+template <class Family>
+auto SteeredFlightsOf<Family>::followed(const FlightPoint& from, const ReferencePoint& to, std::int64_t ticks) const
+    -> FlightPoint {
     FlightPoint next = from;
-    const ReferenceSegment segment(from.reference, to, ticks, task_.model.tick().tick_s);
+    const ReferenceSegment segment(from.reference, to, ticks, task_.tick_s);
     FleetJob job = flights_.job(fleet_of(from), from.ticks, {{segment}});
     flights_.fly_again(job);
     next.reference = to;
@@ -93,11 +102,13 @@ FlightPoint SteeredFlights::followed(const FlightPoint& from, const ReferencePoi
     return next;
 }
 
-bool SteeredFlights::is_worth_closing(const FlightPoint& point) const {
+template <class Family>
+bool SteeredFlightsOf<Family>::is_worth_closing(const FlightPoint& point) const {
     return task_.space.goal_distance_m(point.rest) <= closing_range_m;
 }
 
-std::optional<Closing> SteeredFlights::closing(const FlightPoint& from) const {
+template <class Family>
+auto SteeredFlightsOf<Family>::closing(const FlightPoint& from) const -> std::optional<Closing> {
     // The middle of the goal leaves the whole tolerance to the flight; where an obstacle stands there, its rim does
     // too.
     Configuration goal = task_.space.moved_into_goal(from.rest, 0);
@@ -126,30 +137,35 @@ std::optional<Closing> SteeredFlights::closing(const FlightPoint& from) const {
     return Closing{{from.ticks + segment.ticks(), segment.to()}, job.legs()[0].end, job.legs()[1].end, cost};
 }
 
-Plan SteeredFlights::plan(const std::vector<FlightPoint>& points, const std::optional<Closing>& end) const {
-    Plan plan;
-    plan.tick_s = task_.model.tick().tick_s;
+template <class Family>
+auto SteeredFlightsOf<Family>::plan(const std::vector<FlightPoint>& points, const std::optional<Closing>& end) const
+    -> Plan {
+    Plan plan = task_.blank_plan;
     for (const FlightPoint& point : points) {
         plan.reference.push_back({point.ticks, point.reference});
     }
     if (end) {
         plan.reference.push_back(end->goal);
     } else {
-        constexpr double still[max_axes]{};
+        constexpr double still[std::size(ReferencePoint{}.velocity)]{};
         while (!stands_still(plan.reference.back().point)) {
-            const ReferenceKnot& last = plan.reference.back();
+            const auto& last = plan.reference.back();
             plan.reference.push_back({last.tick + steps_.ticks(), steps_.after(last.point, still)});
         }
     }
     return plan;
 }
 
-void SteeredFlights::verify(const std::vector<FlightPoint>& points, const Closing& end) const {
+template <class Family>
+void SteeredFlightsOf<Family>::verify(const std::vector<FlightPoint>& points, const Closing& end) const {
     std::vector<FlightPoint> moments = points;
     moments.push_back({end.arrival, {}, end.goal.point, {}, 0, end.goal.tick});
     const std::int64_t hold_ticks = flights_.hold_leg(end.goal.point).segment.ticks();
     moments.push_back({end.end, {}, end.goal.point, {}, end.cost, end.goal.tick + hold_ticks});
     flights_.verify(moments);
 }
+
+template class SteeredFlightsOf<Plane>;
+template class SteeredFlightsOf<Space>;
 
 }  // namespace downwash::planning

@@ -11,19 +11,38 @@
 namespace downwash::planning {
 
 /// How a flight ends: a reference segment to rest at the goal, and the hold there.
-struct Closing {
-    ReferenceKnot goal;   ///< goal at rest, in ticks since the start
+template <class Family>
+struct ClosingOf {
+    using Knot = typename decltype(Family::Plan::reference)::value_type;
+    using FlightState = typename Family::FlightState;
+
+    Knot goal;            ///< goal at rest, in ticks since the start
     FlightState arrival;  ///< the vehicle before the hold
     FlightState end;      ///< the vehicle after the hold
     double cost = 0;      ///< cost of the whole flight, hold included
 };
+using Closing = ClosingOf<Plane>;
 
 /// The flights of one problem that planners over controls choose from, flown in closed loop tick by tick, in
 /// every world of the search.
-class SteeredFlights {
+template <class Family>
+class SteeredFlightsOf {
  public:
+    using Configuration = typename Family::Configuration;
+    using ReferencePoint = typename Family::ReferencePoint;
+    using ReferenceSegment = typename Family::ReferenceSegment;
+    using SearchSpace = typename Family::SearchSpace;
+    using Plan = typename Family::Plan;
+    using SearchTask = SearchTaskOf<Family>;
+    using ReferenceSteps = ReferenceStepsOf<Family>;
+    using PlannedFlights = PlannedFlightsOf<Family>;
+    using FlightPoint = FlightPointOf<Family>;
+    using FleetJob = FleetJobOf<Family>;
+    using Fleet = FleetOf<Family>;
+    using Closing = ClosingOf<Family>;
+
     /// @param flights must outlive it
-    explicit SteeredFlights(PlannedFlights& flights);
+    explicit SteeredFlightsOf(PlannedFlights& flights);
 
     [[nodiscard]] const SearchTask& task() const noexcept { return task_; }
     [[nodiscard]] const SearchSpace& space() const noexcept { return task_.space; }
@@ -35,10 +54,10 @@ class SteeredFlights {
 
     /// Flies one step with the reference taking on a velocity. The tick at which a rule is broken ends the step.
     /// @param velocity wanted along each axis [m/s or rad/s]
-    [[nodiscard]] FlightPoint stepped(const FlightPoint& from, const double velocity[max_axes]) const;
+    [[nodiscard]] FlightPoint stepped(const FlightPoint& from, const double* velocity) const;
 
     /// A step that was flown before, flown again: neither counted, nor cut short when the search is over.
-    [[nodiscard]] FlightPoint stepped_again(const FlightPoint& from, const double velocity[max_axes]) const;
+    [[nodiscard]] FlightPoint stepped_again(const FlightPoint& from, const double* velocity) const;
 
     /// Flies a whole reference segment, as our own planner's edges are. Not counted. It is the caller's business that
     /// the segment keeps the limits of motion.
@@ -60,11 +79,12 @@ class SteeredFlights {
  private:
     void arrive(FlightPoint& next, const FlightPoint& from, const FleetJob& job) const;
     /// Where a step leads but for its flight: the reference, and the place where that would rest.
-    [[nodiscard]] FlightPoint steered(const FlightPoint& from, const double velocity[max_axes]) const;
+    [[nodiscard]] FlightPoint steered(const FlightPoint& from, const double* velocity) const;
 
     PlannedFlights& flights_;
     const SearchTask& task_;
     ReferenceSteps steps_;
 };
+using SteeredFlights = SteeredFlightsOf<Plane>;
 
 }  // namespace downwash::planning

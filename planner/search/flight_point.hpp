@@ -40,6 +40,8 @@ template <class Family>
 
 /// The vehicle level and at rest at a configuration.
 [[nodiscard]] FlightPoint resting_at(const FlightModel& model, const Configuration& configuration);
+/// The same in space, for distances: the controller has not come to rest there.
+[[nodiscard]] FlightPointOf<Space> resting_at(const SpaceProblemModel& model, const SpaceConfiguration& configuration);
 
 /// Whether vehicle, in all worlds, and reference are the same to the last bit.
 template <class Family>

@@ -21,14 +21,18 @@ namespace {
 
 namespace ob = ompl::base;
 
+template <class Family>
 class Moment : public ob::State {
  public:
-    FlightPoint point;
+    FlightPointOf<Family> point;
 };
 
 /// Samples moments of rest at places that the sampler of the space of configurations draws.
+template <class Family>
 class FlightSampler : public ob::StateSampler {
  public:
+    using SearchTask = SearchTaskOf<Family>;
+
     FlightSampler(const ob::StateSpace* states, const ob::StateSpacePtr& places, const SearchTask& task)
         : ob::StateSampler(states),
           task_(task),
@@ -41,18 +45,20 @@ class FlightSampler : public ob::StateSampler {
         rest_at_place(state);
     }
     void sampleUniformNear(ob::State* state, const ob::State* near, double distance) override {
-        write(point_of(near).rest, beside_.get(), task_.space);
+        write(point_of<Family>(near).rest, beside_.get(), task_.space);
         places_->sampleUniformNear(place_.get(), beside_.get(), distance);
         rest_at_place(state);
     }
     void sampleGaussian(ob::State* state, const ob::State* mean, double deviation) override {
-        write(point_of(mean).rest, beside_.get(), task_.space);
+        write(point_of<Family>(mean).rest, beside_.get(), task_.space);
         places_->sampleGaussian(place_.get(), beside_.get(), deviation);
         rest_at_place(state);
     }
 
  private:
-    void rest_at_place(ob::State* state) { point_of(state) = resting_at(task_.model, read(place_.get(), task_.space)); }
+    void rest_at_place(ob::State* state) {
+        point_of<Family>(state) = resting_at(task_.model, read(place_.get(), task_.space));
+    }
 
     const SearchTask& task_;
     ob::ScopedState<> place_, beside_;
@@ -60,8 +66,11 @@ class FlightSampler : public ob::StateSampler {
 };
 
 /// The coordinates of the place of rest, angles as lengths.
+template <class Family>
 class PlaceOfRest : public ob::ProjectionEvaluator {
  public:
+    using SearchSpace = typename Family::SearchSpace;
+
     PlaceOfRest(const ob::StateSpace* states, const SearchSpace& space)
         : ob::ProjectionEvaluator(states), search_(space) {}
 
@@ -71,7 +80,7 @@ class PlaceOfRest : public ob::ProjectionEvaluator {
         cellSizes_.assign(search_.axes().size(), cell_m);
     }
     void project(const ob::State* state, Eigen::Ref<Eigen::VectorXd> projection) const override {
-        const Configuration& rest = point_of(state).rest;
+        const auto& rest = point_of<Family>(state).rest;
         for (std::size_t i = 0; i < search_.axes().size(); ++i) {
             const SearchAxis& axis = search_.axes()[i];
             projection[static_cast<Eigen::Index>(i)] =
@@ -83,8 +92,12 @@ class PlaceOfRest : public ob::ProjectionEvaluator {
     const SearchSpace& search_;
 };
 
+template <class Family>
 class FlightSpace : public ob::StateSpace {
  public:
+    using SearchTask = SearchTaskOf<Family>;
+    using SearchSpace = typename Family::SearchSpace;
+
     FlightSpace(const SearchTask& task, Random& random)
         : task_(task), random_(random), places_(make_configuration_space(task.space, random)) {
         setName("Flights");
@@ -108,24 +121,45 @@ class FlightSpace : public ob::StateSpace {
     void enforceBounds(ob::State*) const override {}  // samples keep them, and a flight cannot be moved
     /// Whether the reference is inside; a start in motion may come to rest outside.
     bool satisfiesBounds(const ob::State* state) const override {
-        return space().is_inside(configuration_of(point_of(state).reference));
+        return space().is_inside(configuration_of(point_of<Family>(state).reference));
     }
-    void copyState(ob::State* to, const ob::State* from) const override { point_of(to) = point_of(from); }
+    void copyState(ob::State* to, const ob::State* from) const override {
+        point_of<Family>(to) = point_of<Family>(from);
+    }
     double distance(const ob::State* a, const ob::State* b) const override {
-        return space().distance_m(point_of(a).rest, point_of(b).rest);
+        return space().distance_m(point_of<Family>(a).rest, point_of<Family>(b).rest);
     }
     bool equalStates(const ob::State* a, const ob::State* b) const override {
-        return is_same_moment(point_of(a), point_of(b));
+        return is_same_moment(point_of<Family>(a), point_of<Family>(b));
     }
     /// Between two moments there is only flight: the nearer one stands for it.
     void interpolate(const ob::State* from, const ob::State* to, double s, ob::State* state) const override {
-        point_of(state) = s < 0.5 ? point_of(from) : point_of(to);
+        point_of<Family>(state) = s < 0.5 ? point_of<Family>(from) : point_of<Family>(to);
     }
     ob::StateSamplerPtr allocDefaultStateSampler() const override {
-        return std::make_shared<FlightSampler>(this, places_, task_);
+        return std::make_shared<FlightSampler<Family>>(this, places_, task_);
     }
-    ob::State* allocState() const override { return new Moment; }
-    void freeState(ob::State* state) const override { delete static_cast<Moment*>(state); }
+    ob::State* allocState() const override { return new Moment<Family>; }
+    void freeState(ob::State* state) const override { delete static_cast<Moment<Family>*>(state); }
+    void registerProjections() override {
+        registerDefaultProjection(std::make_shared<PlaceOfRest<Family>>(this, space()));
+    }
+
+ protected:
+    [[nodiscard]] const SearchSpace& space() const noexcept { return task_.space; }
+
+    const SearchTask& task_;
+
+ private:
+    Random& random_;
+    ob::StateSpacePtr places_;
+};
+
+/// The space of flights in the plane, whose moments can be written as bytes.
+class PlanarFlightSpace : public FlightSpace<Plane> {
+ public:
+    using FlightSpace::FlightSpace;
+
     unsigned int getSerializationLength() const override {
         std::size_t numbers = number_count_in(task_.model.nominal_world());
         for (std::size_t i = 0; i < other_worlds(); ++i) {
@@ -170,7 +204,6 @@ class FlightSpace : public ob::StateSpace {
         }
         out << '\n';
     }
-    void registerProjections() override { registerDefaultProjection(std::make_shared<PlaceOfRest>(this, space())); }
 
  private:
     /// A moment but for the vehicle.
@@ -208,22 +241,19 @@ class FlightSpace : public ob::StateSpace {
         return from;
     }
 
-    [[nodiscard]] const SearchSpace& space() const noexcept { return task_.space; }
     [[nodiscard]] std::size_t other_worlds() const noexcept {
         return task_.worlds != nullptr ? task_.worlds->worlds.size() : 0;
     }
-
-    const SearchTask& task_;
-    Random& random_;
-    ob::StateSpacePtr places_;
 };
 
+template <class Family>
 class FlightValidity : public ob::StateValidityChecker {
  public:
     using ob::StateValidityChecker::StateValidityChecker;
-    bool isValid(const ob::State* state) const override { return point_of(state).is_valid; }
+    bool isValid(const ob::State* state) const override { return point_of<Family>(state).is_valid; }
 };
 
+template <class Family>
 class FlightObjective : public ob::OptimizationObjective {
  public:
     explicit FlightObjective(const ob::SpaceInformationPtr& information) : ob::OptimizationObjective(information) {
@@ -232,72 +262,98 @@ class FlightObjective : public ob::OptimizationObjective {
     }
     ob::Cost stateCost(const ob::State*) const override { return identityCost(); }
     ob::Cost motionCost(const ob::State* from, const ob::State* to) const override {
-        return ob::Cost(point_of(to).cost - point_of(from).cost);
+        return ob::Cost(point_of<Family>(to).cost - point_of<Family>(from).cost);
     }
     bool isSymmetric() const override { return false; }
 };
 
 }  // namespace
 
-FlightPoint& point_of(ob::State* state) {
-    return static_cast<Moment*>(state)->point;
+template <class Family>
+FlightPointOf<Family>& point_of(ob::State* state) {
+    return static_cast<Moment<Family>*>(state)->point;
 }
 
-const FlightPoint& point_of(const ob::State* state) {
-    return static_cast<const Moment*>(state)->point;
+template <class Family>
+const FlightPointOf<Family>& point_of(const ob::State* state) {
+    return static_cast<const Moment<Family>*>(state)->point;
 }
 
+template <>
 ob::StateSpacePtr make_flight_space(const SearchTask& task, Random& random) {
-    return std::make_shared<FlightSpace>(task, random);
+    return std::make_shared<PlanarFlightSpace>(task, random);
+}
+template <>
+ob::StateSpacePtr make_flight_space(const SearchTaskOf<Space>& task, Random& random) {
+    return std::make_shared<FlightSpace<Space>>(task, random);
 }
 
 Random& random_of(const ob::StateSpace& flights) {
-    return static_cast<const FlightSpace&>(flights).random();
+    return static_cast<const FlightSpace<Plane>&>(flights).random();
 }
 
 const ob::StateSpacePtr& places_of(const ob::StateSpace& flights) {
-    return static_cast<const FlightSpace&>(flights).places();
+    return static_cast<const FlightSpace<Plane>&>(flights).places();
 }
 
+template <class Family>
 ob::StateValidityCheckerPtr make_flight_validity(const ob::SpaceInformationPtr& information) {
-    return std::make_shared<FlightValidity>(information);
+    return std::make_shared<FlightValidity<Family>>(information);
 }
 
+template <class Family>
 ob::OptimizationObjectivePtr make_flight_objective(const ob::SpaceInformationPtr& information) {
-    return std::make_shared<FlightObjective>(information);
+    return std::make_shared<FlightObjective<Family>>(information);
 }
 
 bool is_flight_objective(const ob::OptimizationObjective& objective) {
-    return dynamic_cast<const FlightObjective*>(&objective) != nullptr;
+    return dynamic_cast<const FlightObjective<Plane>*>(&objective) != nullptr;
 }
 
-FlightGoal::FlightGoal(const ob::SpaceInformationPtr& information, const SearchTask& task, Random& random)
+template <class Family>
+FlightGoalOf<Family>::FlightGoalOf(const ob::SpaceInformationPtr& information, const SearchTask& task, Random& random)
     : ob::GoalSampleableRegion(information), task_(task), random_(random) {}
 
-double FlightGoal::distanceGoal(const ob::State* state) const {
-    return task_.space.goal_distance_m(point_of(state).rest);
+template <class Family>
+double FlightGoalOf<Family>::distanceGoal(const ob::State* state) const {
+    return task_.space.goal_distance_m(point_of<Family>(state).rest);
 }
 
-bool FlightGoal::isSatisfied(const ob::State* state) const {
-    const FlightPoint& point = point_of(state);
+template <class Family>
+bool FlightGoalOf<Family>::isSatisfied(const ob::State* state) const {
+    const FlightPointOf<Family>& point = point_of<Family>(state);
     return is_at_rest(point.reference) && task_.space.is_near_goal(configuration_of(point.reference));
 }
 
-bool FlightGoal::isSatisfied(const ob::State* state, double* distance) const {
+template <class Family>
+bool FlightGoalOf<Family>::isSatisfied(const ob::State* state, double* distance) const {
     if (distance != nullptr) {
         *distance = distanceGoal(state);
     }
     return isSatisfied(state);
 }
 
-void FlightGoal::sampleGoal(ob::State* state) const {
-    const std::optional<Configuration> sample = task_.space.sample_goal(random_);
-    point_of(state) = resting_at(task_.model, sample ? *sample : task_.space.sample(random_));
+template <class Family>
+void FlightGoalOf<Family>::sampleGoal(ob::State* state) const {
+    const auto sample = task_.space.sample_goal(random_);
+    point_of<Family>(state) = resting_at(task_.model, sample ? *sample : task_.space.sample(random_));
 }
 
-unsigned int FlightGoal::maxSampleCount() const {
+template <class Family>
+unsigned int FlightGoalOf<Family>::maxSampleCount() const {
     return std::numeric_limits<unsigned int>::max();
 }
+
+template class FlightGoalOf<Plane>;
+template class FlightGoalOf<Space>;
+template FlightPoint& point_of<Plane>(ob::State*);
+template const FlightPoint& point_of<Plane>(const ob::State*);
+template FlightPointOf<Space>& point_of<Space>(ob::State*);
+template const FlightPointOf<Space>& point_of<Space>(const ob::State*);
+template ob::StateValidityCheckerPtr make_flight_validity<Plane>(const ob::SpaceInformationPtr&);
+template ob::StateValidityCheckerPtr make_flight_validity<Space>(const ob::SpaceInformationPtr&);
+template ob::OptimizationObjectivePtr make_flight_objective<Plane>(const ob::SpaceInformationPtr&);
+template ob::OptimizationObjectivePtr make_flight_objective<Space>(const ob::SpaceInformationPtr&);
 
 OmplTask::OmplTask(const SearchTask& task, Random& random)
     : information(std::make_shared<ob::SpaceInformation>(make_flight_space(task, random))),

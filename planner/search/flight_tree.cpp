@@ -252,8 +252,10 @@ std::size_t FlightTreeOf<Family>::rewire(std::span<const Rewiring> rewirings) {
     std::vector<Edge> edges;
     for (const Rewiring& r : rewirings) {
         const Configuration& to = r.node->configuration;
-        // Otherwise a joint would arrive a whole turn away.
-        if (max_difference(space_.seen_from(r.parent->configuration, to), to) <= 1e-9) {
+        // Otherwise a joint would arrive a whole turn away, or the vehicle would look another way.
+        const ReferencePoint looking = space_.looking(r.parent->reference, r.node->reference);
+        if (max_difference(space_.seen_from(r.parent->configuration, to), to) <= 1e-9 &&
+            max_difference(configuration_of(looking), to) <= 1e-9) {
             open.push_back(r);
             edges.push_back({r.parent, r.node->reference});
         }

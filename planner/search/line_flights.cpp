@@ -52,14 +52,12 @@ auto LineFlightsOf<Family>::flown(const ReferenceSegment& segment, FlightState& 
         const Configuration at = configuration_of(reference);
         flight.rejection = space.rejection_at(at);
         ++checked;
-        [[maybe_unused]] const double piece_s = static_cast<double>(ticks - flight.ticks) * tick_s;
+        const double piece_s = static_cast<double>(ticks - flight.ticks) * tick_s;
         flight.ticks = ticks;
-        if constexpr (std::is_base_of_v<FlightSums, SegmentFlight>) {
-            flight.length_m += space.distance_m(before, at);
-            if (flight.rejection == Rejection::none && rules_.measures_clearance) {
-                const double clearance_m = task_.model.collisions().clearance_m(level_at(at));
-                flight.clearance_integral += piece_s * clearance_density(clearance_m);
-            }
+        flight.length_m += space.length_m(before, at);
+        if (flight.rejection == Rejection::none && rules_.measures_clearance) {
+            const double clearance_m = task_.model.collisions().clearance_m(level_at(at));
+            flight.clearance_integral += piece_s * clearance_density(clearance_m);
         }
         before = at;
         if (flight.rejection != Rejection::none || i == samples) {

@@ -67,6 +67,25 @@ void PlanChangesOf<Family>::change_speed(ReferencePoint& point, double step) {
 template <class Family>
 auto PlanChangesOf<Family>::draw(const Points& points, const std::vector<std::int64_t>& ticks, double step)
     -> std::optional<ChangedPoints> {
+    std::optional<ChangedPoints> change = drawn(points, ticks, step);
+    if (change) {
+        Points& changed = change->points;
+        const std::size_t last = changed.size() - 1;
+        if (space_.looks_along()) {
+            change->last_segment = last - 1;
+        }
+        // A point at which a segment begins that does not differ stays as it is.
+        const std::size_t end = change->last_segment + 1 == last ? last : change->last_segment;
+        for (std::size_t i = change->first_segment + 1; i <= end; ++i) {
+            changed[i] = space_.looking(changed[i - 1], changed[i]);
+        }
+    }
+    return change;
+}
+
+template <class Family>
+auto PlanChangesOf<Family>::drawn(const Points& points, const std::vector<std::int64_t>& ticks, double step)
+    -> std::optional<ChangedPoints> {
     const double kind = random_.uniform(0, 1);
     if (kind < moves_goal) {
         return with_goal_moved(points, step);

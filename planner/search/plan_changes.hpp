@@ -41,6 +41,8 @@ class PlanChangesOf {
 
  private:
     using Points = std::vector<ReferencePoint>;
+    [[nodiscard]] std::optional<ChangedPoints> drawn(const Points& points, const std::vector<std::int64_t>& ticks,
+                                                     double step);
     [[nodiscard]] std::optional<ChangedPoints> with_goal_moved(Points points, double step);
     [[nodiscard]] std::optional<ChangedPoints> with_corner_added(Points points, const std::vector<std::int64_t>& ticks,
                                                                  double step);

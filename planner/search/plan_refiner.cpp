@@ -196,7 +196,7 @@ auto PlanRefinerOf<Family>::moved_into_goal(const ChangedPlan& plan, double shar
         return std::nullopt;
     }
     std::vector<ReferencePoint> points = plan.points;
-    points.back() = at_rest(moved);
+    points.back() = flights_.task().space.looking(points[points.size() - 2], at_rest(moved));
     return change_flights_.timed(std::move(points), plan.ticks, plan.ticks.size() - 1, plan.ticks.size() - 1, counts);
 }
 

@@ -45,6 +45,7 @@ std::optional<SpacePlanningRules> space_planning_rules(const SpaceProblem& probl
     rules.keeps_joint_limits = false;  // references do; an arm that hovers at a limit swings about it
     rules.max_tracking_error_m = FlightRules{}.max_tracking_error_m;
     rules.max_saturation = problem.planner.max_saturation;
+    rules.max_tilt_rate_rad_s = problem.planner.max_pitch_rate_rad_s.value_or(rules.max_tilt_rate_rad_s);
     return rules;
 }
 
@@ -66,6 +67,7 @@ std::unique_ptr<EdgeFlightsOf<Space>> edge_flights(const SearchTaskOf<Space>& ta
     FlightRules rules;
     rules.margin_m = task.problem.planner.safety_margin_m;
     rules.is_over = std::move(is_over);
+    rules.measures_clearance = task.problem.planner.objective.weight(Objective::clearance) > 0;
     return std::make_unique<LineFlightsOf<Space>>(task, std::move(rules));
 }
 

@@ -107,6 +107,18 @@ class SearchSpace : public SearchAxesOf<Plane> {
     /// The square root of the weighted squares of the ways along all axes [m]: sqrt(dx^2 + dz^2 + (w darm)^2).
     [[nodiscard]] double distance_m(const Configuration& a, const Configuration& b) const noexcept;
 
+    /// In the plane nothing looks anywhere.
+    [[nodiscard]] const ReferencePoint& looking(const ReferencePoint& /*before*/,
+                                                const ReferencePoint& point) const noexcept {
+        return point;
+    }
+    [[nodiscard]] bool looks_along() const noexcept { return false; }
+
+    /// What a way counts in costs that count length: distance_m().
+    [[nodiscard]] double length_m(const Configuration& a, const Configuration& b) const noexcept {
+        return distance_m(a, b);
+    }
+
     /// The square of distance_m() [m2], or some smaller number of at least `enough_m2`.
     [[nodiscard]] double squared_distance_m2(const Configuration& a, const Configuration& b,
                                              double enough_m2) const noexcept;

@@ -19,6 +19,7 @@ SpacePoolSetup setup_of(const SearchTaskOf<Space>& task, const std::optional<Spa
     setup.margin_m = rules ? task.problem.planner.safety_margin_m : 0;
     setup.rules = rules;
     setup.goal = &task.space.goal_rule();
+    setup.measures_clearance = task.problem.planner.objective.weight(Objective::clearance) > 0;
     setup.is_over = std::move(is_over);
     return setup;
 }

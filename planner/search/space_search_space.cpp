@@ -72,6 +72,9 @@ std::optional<WantedBall> wanted_ball(const SpaceGoalKind& kind) {
     return std::nullopt;
 }
 
+/// What a reference may use of the goal's tolerances, and rounding.
+constexpr double near_goal_share = usable_tolerance_share + 1e-6;
+
 std::span<const SpaceGoal> alternatives(const SpaceGoal& goal) noexcept {
     return goal.any_of.empty() ? std::span(&goal, 1) : std::span(goal.any_of);
 }
@@ -99,6 +102,7 @@ SpaceSearchSpace::SpaceSearchSpace(const SpaceProblem& problem, const SpaceProbl
       rule_(problem.robot, model.shared_scene(), {problem.goals.front()}),
       sampler_(problem.robot, problem.bounds, model.shared_scene(), model.collisions(), problem.planner.safety_margin_m,
                problem.goals.front()),
+      yaw_(problem.motion.yaw, model.problem().robot, rule_),
       limits_(motion_limits_of(problem)),
       start_(place_of(problem.start)),
       margin_m_(problem.planner.safety_margin_m),
@@ -143,10 +147,6 @@ SpaceConfiguration SpaceSearchSpace::sample_in_transport(Random& random) const {
     return c;
 }
 
-SpaceGoalError SpaceSearchSpace::error(const SpaceGoal& goal, const Configuration& c) const {
-    return goal_error(goal, model_.problem().robot, level_at(c), model_.scene());
-}
-
 std::optional<SpaceConfiguration> SpaceSearchSpace::sample_goal(Random& random) const {
     // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance.
     const double share = random.chance(0.5) ? 0 : usable_tolerance_share * random.uniform(0, 1);
@@ -175,7 +175,7 @@ SpaceConfiguration SpaceSearchSpace::moved_into_goal(Configuration c, double sha
 }
 
 SpaceGoalError SpaceSearchSpace::error(const Configuration& c) const {
-    return rule_.error({}, resting_at(c));
+    return rule_.error_at(0, c);
 }
 
 std::int64_t SpaceSearchSpace::hold_ticks(const SpacePoint& at) const {
@@ -183,9 +183,17 @@ std::int64_t SpaceSearchSpace::hold_ticks(const SpacePoint& at) const {
     return rule_.hovers(plan).front().end_tick;
 }
 
+double SpaceSearchSpace::hold_s(const Configuration& c) const {
+    return static_cast<double>(hold_ticks(at_rest(c))) / model_.problem().robot.controller.rate_hz;
+}
+
 bool SpaceSearchSpace::is_near_goal(const Configuration& c) const {
     const SpaceGoalError off = error(c);
-    return off.used_share <= usable_tolerance_share + 1e-6 && !off.is_hidden;
+    return off.used_share <= near_goal_share && !off.is_hidden;
+}
+
+SpacePoint SpaceSearchSpace::looking(const SpacePoint& before, const SpacePoint& point) const {
+    return yaw_.looking(before, point, near_goal_share);
 }
 
 double SpaceSearchSpace::goal_distance_m(const Configuration& c) const {
@@ -193,12 +201,13 @@ double SpaceSearchSpace::goal_distance_m(const Configuration& c) const {
         return 0;
     }
     const SpaceGoalError off = error(c);
-    return off.distance_m + 0.5 * reach_m_ * off.angle_rad;
+    constexpr double unknown_turn_rad = 1;  // to where a surface could be touched
+    return off.distance_m + 0.5 * reach_m_ * (std::isfinite(off.used_share) ? off.angle_rad : unknown_turn_rad);
 }
 
 bool SpaceSearchSpace::is_met(const AnySpaceState& vehicle) const {
     const SpaceMotion motion = motion_of(vehicle);
-    return meets_goal(rule_.error({}, motion), motion);
+    return meets_goal(rule_.error(rule_.hover_at(0, at_rest(configuration_of(motion))), motion), motion);
 }
 
 std::vector<SpaceSearchSpace::Approach> SpaceSearchSpace::approaches(const Configuration& from) const {
@@ -208,8 +217,9 @@ std::vector<SpaceSearchSpace::Approach> SpaceSearchSpace::approaches(const Confi
         tool_speed_m_s += 2 * reach_m_ * axes()[i].max_rate;
     }
     std::vector<Approach> all;
+    const std::vector<SpaceGoalError> errors = rule_.errors_at(0, from);
     for (const SpaceGoal& goal : alternatives(this->goal())) {
-        const SpaceGoalError off = error(goal, from);
+        const SpaceGoalError& off = errors[all.size()];
         if (const auto* at = std::get_if<SpaceConfigurationGoal>(&goal.kind)) {
             const double way_m = std::max(0.0, off.distance_m - at->tolerance_m);
             double longest_s = way_m / limits_.max_speed_m_s;
@@ -227,13 +237,17 @@ std::vector<SpaceSearchSpace::Approach> SpaceSearchSpace::approaches(const Confi
         }
         const std::optional<WantedBall> ball = wanted_ball(goal.kind);
         const bool is_camera = std::holds_alternative<SpaceCameraGoal>(goal.kind);  // its error is beyond its distances
-        const double tool_way_m = std::max(0.0, off.distance_m - (ball && !is_camera ? ball->radius_m : 0));
+        const auto* const contact = std::get_if<SpaceContactGoal>(&goal.kind);
+        const double tolerance_m = contact != nullptr ? contact->tolerance_m : ball && !is_camera ? ball->radius_m : 0;
+        const double tool_way_m = std::max(0.0, off.distance_m - tolerance_m);
         double way_m = 0;
         if (ball) {
             const Vector3 to_m = ball->center_m - Vector3{from[0], from[1], from[2]};
             way_m = std::max(0.0, std::sqrt(dot(to_m, to_m)) - ball->radius_m - tool_reach_m_);
         }
-        all.push_back({way_m, std::max(tool_way_m / tool_speed_m_s, way_m / limits_.max_speed_m_s), goal.hold_s});
+        // A touch itself is no part of the plan.
+        const double hold_s = contact != nullptr ? touch_hover_s : goal.hold_s;
+        all.push_back({way_m, std::max(tool_way_m / tool_speed_m_s, way_m / limits_.max_speed_m_s), hold_s});
     }
     return all;
 }

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "downwash/search/kept_yaw.hpp"
 #include "downwash/search/random.hpp"
 #include "downwash/search/search_space.hpp"
 #include "downwash/simulation/space_goal_rule.hpp"
@@ -44,6 +45,10 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
 
     /// duration_s() as a length: the way at top speed of a reference that takes so long at its mean speed [m].
     [[nodiscard]] double distance_m(const Configuration& a, const Configuration& b) const noexcept;
+    /// What a way counts in costs that count length: that of the multirotor's centre of mass.
+    [[nodiscard]] double length_m(const Configuration& a, const Configuration& b) const noexcept {
+        return travel_m(a, b);
+    }
     /// The square of distance_m() [m2].
     [[nodiscard]] double squared_distance_m2(const Configuration& a, const Configuration& b,
                                              double enough_m2) const noexcept;
@@ -62,6 +67,7 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
     [[nodiscard]] Configuration moved_into_goal(Configuration configuration, double share) const;
     [[nodiscard]] SpaceGoalError error(const Configuration& configuration) const;
     [[nodiscard]] std::int64_t hold_ticks(const SpacePoint& at) const;
+    [[nodiscard]] double hold_s(const Configuration& configuration) const;
     [[nodiscard]] bool is_near_goal(const Configuration& configuration) const;
     [[nodiscard]] double goal_distance_m(const Configuration& configuration) const;
     [[nodiscard]] bool is_met(const AnySpaceState& vehicle) const;
@@ -73,6 +79,11 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
         double hold_s;
     };
     [[nodiscard]] std::vector<Approach> approaches(const Configuration& from) const;
+
+    /// A point as it looks after another one; see KeptYaw.
+    [[nodiscard]] SpacePoint looking(const SpacePoint& before, const SpacePoint& point) const;
+    /// Whether how a point looks depends on the points before.
+    [[nodiscard]] bool looks_along() const noexcept { return yaw_.depends_on_way(); }
 
     /// What forbids the level vehicle there, or a vehicle in a pose: `bounds`, `arm_limits`, `collision` with the
     /// safety margin, or `none`.
@@ -96,11 +107,11 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
  private:
     [[nodiscard]] std::optional<Configuration> nearest_at_goal(const Configuration& to, double share,
                                                                bool may_have_flaws) const;
-    [[nodiscard]] SpaceGoalError error(const SpaceGoal& goal, const Configuration& c) const;
 
     const SpaceProblemModel& model_;
     SpaceGoalRule rule_;
     SpaceGoalSampler sampler_;
+    KeptYaw yaw_;
     SpaceMotionLimits limits_;
     Configuration start_;
     double margin_m_;

@@ -191,11 +191,12 @@ auto TreeGrowthOf<Family>::aim() -> std::optional<ReferencePoint> {
     const Configuration to = flights_.goal().contains(*target_place)
                                  ? *target_place
                                  : space_.steered(nearest, *target_place, parameters_.range_share * space_.extent_m());
-    if (const Rejection rejection = space_.rejection_at(to); rejection != Rejection::none) {
+    const ReferencePoint point = space_.looking(tree_.root().reference, at_rest(to));
+    if (const Rejection rejection = space_.rejection_at(configuration_of(point)); rejection != Rejection::none) {
         flights_.count_rejection(rejection);
         return std::nullopt;
     }
-    return at_rest(to);
+    return point;
 }
 
 template <class Family>
@@ -293,7 +294,7 @@ class TreeGrowthOf<Family>::ParentChoice final : public FlightTreeOf<Family>::Ed
         ReferencePoint to = growth_.to;
         const Configuration seen = tree_.space_.seen_from(parent.node->configuration, configuration_of(to));
         std::copy(seen.coordinate.begin(), seen.coordinate.end(), to.position);
-        return Edge{parent.node, to};
+        return Edge{parent.node, tree_.space_.looking(parent.node->reference, to)};
     }
 
     void note(std::optional<Flown> flight) override {

@@ -61,7 +61,9 @@ class Parents {
 
 }  // namespace
 
-std::vector<TreeNode> tree_of(const ob::Planner& planner, const std::function<Configuration(const ob::State*)>& place) {
+template <class Configuration>
+std::vector<BasicTreeNode<Configuration>> tree_of(const ob::Planner& planner,
+                                                  const std::function<Configuration(const ob::State*)>& place) {
     ob::PlannerData data(planner.getSpaceInformation());
     planner.getPlannerData(data);
     const Parents parents(data);
@@ -70,7 +72,7 @@ std::vector<TreeNode> tree_of(const ob::Planner& planner, const std::function<Co
     for (unsigned int i = 0; i < data.numVertices(); ++i) {
         index[i] = parents.of(i) == unseen ? TreeNode::no_parent : count++;
     }
-    std::vector<TreeNode> tree;
+    std::vector<BasicTreeNode<Configuration>> tree;
     tree.reserve(static_cast<std::size_t>(count));
     for (unsigned int i = 0; i < data.numVertices(); ++i) {
         if (const int parent = parents.of(i); parent != unseen) {
@@ -80,5 +82,9 @@ std::vector<TreeNode> tree_of(const ob::Planner& planner, const std::function<Co
     }
     return tree;
 }
+
+template std::vector<TreeNode> tree_of(const ob::Planner&, const std::function<Configuration(const ob::State*)>&);
+template std::vector<SpaceTreeNode> tree_of(const ob::Planner&,
+                                            const std::function<SpaceConfiguration(const ob::State*)>&);
 
 }  // namespace downwash::planning

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "downwash/search/search_record.hpp"
-#include "downwash/search/search_space.hpp"
 
 namespace downwash::planning {
 
@@ -14,7 +13,8 @@ namespace downwash::planning {
 /// one on the way back to the start, or to the goal where a tree grows from there. Nodes that are connected to neither
 /// are left out.
 /// @param place where a state of the planner's space is
-[[nodiscard]] std::vector<TreeNode> tree_of(const ompl::base::Planner& planner,
-                                            const std::function<Configuration(const ompl::base::State*)>& place);
+template <class Configuration>
+[[nodiscard]] std::vector<BasicTreeNode<Configuration>> tree_of(
+    const ompl::base::Planner& planner, const std::function<Configuration(const ompl::base::State*)>& place);
 
 }  // namespace downwash::planning

@@ -87,13 +87,10 @@ TEST_CASE("several goals in space are visited in their order") {
 TEST_CASE("what cannot be planned in space yet is refused by the key that asks for it") {
     SpaceProblem problem = girder();
     CHECK(refused(problem).empty());
-    problem.planner.algorithm = "prm-star";
-    problem.planner.objective = Objective::length;
-    problem.motion.yaw.mode = YawMode::along;
-    problem.goals.front().kind = SpaceContactGoal{};
-    CHECK(refused(problem) == std::vector<std::string>{"goal", "planner.algorithm", "planner.objective", "motion.yaw"});
+    problem.planner.parameters["passage_share"] = 0.1;
+    CHECK(refused(problem) == std::vector<std::string>{"planner.parameters.passage_share"});
     problem = girder();
-    problem.goals.push_back({SpaceContactGoal{}, 5, {}});
-    problem.in_any_order = true;
-    CHECK(refused(problem) == std::vector<std::string>{"goal.in_any_order[1]"});
+    problem.planner.algorithm = "rrt";
+    problem.motion.yaw.mode = YawMode::along;
+    CHECK(refused(problem) == std::vector<std::string>{"motion.yaw"});
 }

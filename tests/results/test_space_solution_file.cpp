@@ -161,17 +161,19 @@ TEST_CASE("The order of targets in space is written and read back, and is one of
     CHECK(read_with(mission, by_hand).order == given_order(mission));
 }
 
-TEST_CASE("A flight in space costs what it takes of energy and time, and nothing is said of other objectives") {
+TEST_CASE("A flight in space costs what it takes of energy, time, length and clearance") {
     SpaceFlight flight;
     flight.energy_j = 50;
     flight.duration_s = 3;
+    flight.length_m = 7;
+    flight.clearance_integral = 2;
     CHECK(cost_of(flight, Objective::energy) == 50);
     CostFunction sum;
     sum.weight(Objective::time) = 10;
     CHECK(cost_of(flight, sum) == 80);
-    CHECK_FALSE(cost_of(flight, Objective::length));
+    CHECK(cost_of(flight, Objective::length) == 7);
     sum.weight(Objective::clearance) = 1;
-    CHECK_FALSE(cost_of(flight, sum));
+    CHECK(cost_of(flight, sum) == 82);
 }
 
 TEST_CASE("A reference by hand needs its axes and times alone") {

@@ -84,8 +84,66 @@ TEST_CASE("a planned flight in space keeps its bounds, its joints' limits, and w
     SpacePlanningRules idle = wide;
     idle.max_saturation = 1e-6;
     CHECK(rejection(idle) == Rejection::saturation);
+    SpacePlanningRules calm = wide;
+    calm.max_tilt_rate_rad_s = 2;
+    CHECK(rejection(calm) == Rejection::none);
+    calm.max_tilt_rate_rad_s = 0.01;
+    CHECK(rejection(calm) == Rejection::unstable);
     robot.links[0].upper_limit_rad = 0.4;  // the plan leads to 0.6 rad
     CHECK(rejection(wide) == Rejection::arm_limits);
+}
+
+TEST_CASE("flights in space side by side sum up length, tilt rate and clearance as one flight alone does") {
+    const int joints = GENERATE(0, 2);
+    const SpaceRobot robot = space_robot(joints);
+    const SpacePlan plan = space_plan(joints);
+    const auto scene =
+        std::make_shared<const Scene>(std::vector<Obstacle>{{"post", Box{{0.2, 0.2, 3}}, {1.95, -0.55, 1.5}, {}}});
+    const SpaceChecker checker(scene, {{{Box{{0.9, 0.9, 0.1}}, {0, 0, 0}}}, {}});
+    SpaceFlightSettings settings;
+    settings.checker = &checker;
+    settings.is_refined = false;
+    const SpaceFlight alone = fly(robot, plan, motion_at_rest(plan.at(0)), settings);
+    REQUIRE(alone.outcome == Outcome::ok);
+    double tilt_rate_rad_s = 0, way_m = 0;
+    for (std::size_t i = 1; i < alone.rows.size(); ++i) {
+        const Vector3& rates = alone.rows[i].motion.body_rates_rad_s;
+        const Vector3 step_m = alone.rows[i].motion.position_m - alone.rows[i - 1].motion.position_m;
+        tilt_rate_rad_s = std::max(tilt_rate_rad_s, std::hypot(rates[0], rates[1]));
+        way_m += std::sqrt(dot(step_m, step_m));
+    }
+    CHECK(alone.length_m == Approx(way_m).epsilon(1e-12));
+
+    const auto flown_with = [&](bool measures_clearance, std::optional<ClearanceError> finds_min_clearance) {
+        SpacePoolSetup setup{robot};
+        setup.checker = &checker;
+        setup.measures_clearance = measures_clearance;
+        setup.finds_min_clearance = finds_min_clearance;
+        SpacePool pool(setup);
+        SpaceFlightJob job{pool.state_at(motion_at_rest(plan.at(0))), {}};
+        for (const SpaceSegment& segment : plan.segments()) {
+            job.legs.push_back({segment});
+        }
+        pool.fly(std::span(&job, 1));
+        REQUIRE(job.rejection() == Rejection::none);
+        return job;
+    };
+    const SpaceFlightJob measured = flown_with(true, {});
+    double length_m = 0, clearance_integral = 0, fastest_rad_s = 0;
+    for (const SpaceFlightLeg& leg : measured.legs) {
+        length_m += leg.flight.length_m;
+        clearance_integral += leg.flight.clearance_integral;
+        fastest_rad_s = std::max(fastest_rad_s, leg.flight.max_tilt_rate_rad_s);
+    }
+    CHECK(length_m == Approx(way_m).epsilon(1e-12));
+    CHECK(fastest_rad_s == tilt_rate_rad_s);
+    CHECK(clearance_integral == Approx(alone.clearance_integral).epsilon(1e-9));
+    CHECK(measured.legs.back().flight.min_clearance_m == Approx(alone.min_clearance_m).margin(1e-7));
+    const ClearanceError rough{0.1, 0.02};
+    const double found_m = flown_with(false, rough).legs.back().flight.min_clearance_m;
+    CHECK(found_m >= alone.min_clearance_m - 1e-7);
+    CHECK(found_m <= alone.min_clearance_m + rough.at_m(alone.min_clearance_m));
+    CHECK(std::isinf(flown_with(false, {}).legs.back().flight.min_clearance_m));
 }
 
 TEST_CASE("a flight in space that hovers where its goal is not, or is not yet slow enough, misses it") {

@@ -31,7 +31,8 @@ std::vector<std::pair<Instructions, int>> ways_to_fly() {
 bool is_same(const SpaceFlightLeg& a, const SpaceFlightLeg& b) {
     return a.flight.rejection == b.flight.rejection && a.flight.ticks == b.flight.ticks &&
            a.flight.max_tracking_error_m == b.flight.max_tracking_error_m &&
-           a.flight.max_saturation == b.flight.max_saturation && downwash::is_same(a.end, b.end);
+           a.flight.max_saturation == b.flight.max_saturation && a.flight.length_m == b.flight.length_m &&
+           a.flight.max_tilt_rate_rad_s == b.flight.max_tilt_rate_rad_s && downwash::is_same(a.end, b.end);
 }
 
 bool is_same(const SpaceFlightJob& a, const SpaceFlightJob& b) {

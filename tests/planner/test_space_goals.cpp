@@ -1,0 +1,250 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "downwash/planner/space_solve.hpp"
+#include "downwash/problems/algorithms.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
+#include "downwash/simulation/space_world_parameters.hpp"
+
+// What searches in space plan beside places: touches, where the vehicle looks, and what a plan keeps small.
+
+using namespace downwash;
+
+namespace {
+
+SpaceProblem read(const std::string& name) {
+    SpaceProblem problem = read_space_problem(DOWNWASH_PROBLEMS "/space/" + name + ".yaml");
+    problem.uncertainty.reset();
+    problem.planner.max_iterations = 400;
+    problem.planner.time_limit_s = 600;
+    return problem;
+}
+
+SpaceSearchResult solved(const SpaceProblem& problem, bool stops_at_first = true) {
+    REQUIRE(space_planning_errors(problem).empty());
+    SpaceSolveOptions options;
+    options.stop_at_first_solution = stops_at_first;
+    return solve(std::make_shared<const SpaceProblemModel>(problem), options);
+}
+
+SpaceGoal place(double x_m, double y_m, double z_m) {
+    SpaceConfigurationGoal goal;
+    goal.x_m = x_m;
+    goal.y_m = y_m;
+    goal.z_m = z_m;
+    return {goal, 2, {}};
+}
+
+/// Presses on the shell of tank_shell, which meets x = 0 at y = 0.
+SpaceGoal touch_of_shell(double z_m, double force_n, double hold_s) {
+    SpaceContactGoal goal;
+    goal.obstacle = "shell";
+    goal.force_n = force_n;
+    goal.position_m = Vector3{0, 0, z_m};
+    return {goal, hold_s, {}};
+}
+
+/// Whether two angles are the same modulo a turn.
+bool are_same_angles(double a_rad, double b_rad) {
+    return std::abs(std::remainder(a_rad - b_rad, 2 * std::numbers::pi)) < 1e-9;
+}
+
+/// Knots of a plan between its start and its end.
+std::vector<std::pair<SpacePoint, SpacePoint>> corners_of(const SpacePlan& plan) {
+    std::vector<std::pair<SpacePoint, SpacePoint>> corners;  // each with the knot before
+    for (std::size_t i = 1; i + 1 < plan.reference.size(); ++i) {
+        corners.emplace_back(plan.reference[i - 1].point, plan.reference[i].point);
+    }
+    return corners;
+}
+
+}  // namespace
+
+TEST_CASE("a contact in space is planned as a hover in front of the surface, and its touch is flown") {
+    SpaceProblem problem = read("tank_shell");
+    problem.planner.variant = GENERATE(Variant::mp_arm, Variant::mp_arm_da, Variant::mp_arm_ada);
+    const SpaceSearchResult found = solved(problem);
+    REQUIRE(found.status == Status::solved);
+    const SpaceGoalVisit& visit = found.execution->goals.at(0);
+    CHECK(visit.is_met);
+    REQUIRE(visit.touch);
+    CHECK(visit.touch->end == SpaceTouchEnd::met);
+    CHECK(visit.touch->force_n == Approx(5).epsilon(0.2));
+    CHECK(std::abs(visit.touch->place_m[2] - 12.09) < 0.1);
+    // The plan leaves the touch out: it waits, and the flight goes on for as long as that takes.
+    const double plan_s = static_cast<double>(found.plan->reference.back().tick) * found.plan->tick_s;
+    CHECK(found.execution->duration_s > plan_s + touch_hover_s + problem.goals[0].hold_s);
+    CHECK(found.execution->min_clearance_m >= problem.planner.safety_margin_m);
+}
+
+TEST_CASE("hover, touch, hover and touch in space are one flight") {
+    SpaceProblem problem = read("tank_shell");
+    problem.goals = {place(2.5, -3, 5), touch_of_shell(6, 5, 2), place(2.5, 1, 4), touch_of_shell(5, 3, 2)};
+    const SpaceSearchResult found = solved(problem);
+    REQUIRE(found.status == Status::solved);
+    const std::vector<SpaceGoalVisit>& visits = found.execution->goals;
+    REQUIRE(visits.size() == 4);
+    for (const SpaceGoalVisit& visit : visits) {
+        CHECK(visit.is_met);
+    }
+    CHECK_FALSE(visits[0].touch);
+    CHECK(visits[1].touch->force_n == Approx(5).epsilon(0.2));
+    CHECK_FALSE(visits[2].touch);
+    CHECK(visits[3].touch->force_n == Approx(3).epsilon(0.2));
+    CHECK(visits[3].touch->touched_s > visits[1].touch->left_s + 10);
+}
+
+TEST_CASE("a contact may be one of several alternatives in space") {
+    SpaceProblem problem = read("tank_shell");
+    SpaceGoal choice = place(2.5, -3, 5);
+    // The place is inside the tank: only the touch is left.
+    choice.any_of = {place(0.3, -6, 16), touch_of_shell(6, 5, 2)};
+    std::get<SpaceConfigurationGoal>(choice.any_of[0].kind).joints_rad = {std::numbers::pi};  // the arm in the shell
+    problem.goals = {choice};
+    const SpaceSearchResult found = solved(problem);
+    REQUIRE(found.status == Status::solved);
+    CHECK(found.execution->goals[0].is_met);
+}
+
+TEST_CASE("where a vehicle in space looks follows motion.yaw at every corner, and goals come first") {
+    SpaceProblem problem = read("around_a_girder");
+    problem.planner.max_iterations = 700;
+    problem.motion.yaw.target_m = {0.5, 3};
+    SpaceEndEffectorGoal goal = std::get<SpaceEndEffectorGoal>(problem.goals[0].kind);
+    goal.direction.reset();
+    const bool binds_yaw = GENERATE(false, true);
+    if (!binds_yaw) {
+        problem.goals[0].kind = goal;
+    }
+    problem.motion.yaw.mode = GENERATE(YawMode::hold, YawMode::along, YawMode::toward);
+    const YawRule& rule = problem.motion.yaw;
+    CAPTURE(name_of(rule.mode), binds_yaw);
+    const SpaceSearchResult found = solved(problem, false);
+    REQUIRE(found.status == Status::solved);
+    CHECK(found.execution->goals[0].is_met);
+    auto corners = corners_of(*found.plan);
+    REQUIRE_FALSE(corners.empty());
+    if (!binds_yaw) {
+        const std::size_t last = found.plan->reference.size() - 1;
+        corners.emplace_back(found.plan->reference[last - 1].point, found.plan->reference[last].point);
+    }
+    bool passes_a_corner = false;
+    for (const auto& [before, here] : corners) {
+        const double yaw_rad = here.position[space::yaw];
+        const double vx = here.velocity[space::x], vy = here.velocity[space::y];
+        const bool moves = std::hypot(vx, vy) > 1e-3;
+        passes_a_corner = passes_a_corner || moves;
+        const double dx = here.position[0] - before.position[0], dy = here.position[1] - before.position[1];
+        switch (rule.mode) {
+            case YawMode::hold:
+                CHECK(yaw_rad == problem.start.yaw_rad);
+                break;
+            case YawMode::along:
+                CHECK(are_same_angles(yaw_rad, moves ? std::atan2(vy, vx) : std::atan2(dy, dx)));
+                break;
+            case YawMode::toward:
+                CHECK(are_same_angles(
+                    yaw_rad, std::atan2(rule.target_m[1] - here.position[1], rule.target_m[0] - here.position[0])));
+                break;
+            case YawMode::free:
+                break;
+        }
+    }
+    CHECK(passes_a_corner);
+}
+
+TEST_CASE("plans in space keep length or clearance small where the objective says so") {
+    SpaceProblem problem = read("around_a_girder");
+    const auto flight_for = [&](const CostFunction& objective) {
+        problem.planner.objective = objective;
+        const SpaceSearchResult found = solved(problem, false);
+        REQUIRE(found.status == Status::solved);
+        // The planner's own figures are those of the flight, but for surfaces looked up in volumes.
+        CHECK(found.cost == Approx(cost_of(*found.execution, objective)).epsilon(0.01));
+        return *found.execution;
+    };
+    CostFunction far = Objective::clearance;
+    far.weight(Objective::time) = 0.1;
+    const SpaceFlight shortest = flight_for(Objective::length);
+    const SpaceFlight farthest = flight_for(far);
+    CHECK(shortest.length_m < farthest.length_m);
+    CHECK(shortest.clearance_integral / shortest.duration_s > farthest.clearance_integral / farthest.duration_s);
+}
+
+TEST_CASE("a limit of how fast the vehicle turns holds for its roll and pitch in space") {
+    SpaceProblem problem = read("around_a_girder");
+    const auto fastest_rad_s = [](const SpaceFlight& flight) {
+        double fastest = 0;
+        for (const SpaceFlightRow& row : flight.rows) {
+            fastest = std::max(fastest, std::hypot(row.motion.body_rates_rad_s[0], row.motion.body_rates_rad_s[1]));
+        }
+        return fastest;
+    };
+    const double without_rad_s = fastest_rad_s(*solved(problem, false).execution);
+    const double limit_rad_s = 0.6 * without_rad_s;
+    problem.planner.max_pitch_rate_rad_s = limit_rad_s;
+    const SpaceSearchResult found = solved(problem, false);
+    REQUIRE(found.status == Status::solved);
+    CHECK(fastest_rad_s(*found.execution) < 1.05 * limit_rad_s);
+    CHECK(found.planning.rejected.at("unstable") > 0);
+}
+
+TEST_CASE("certificates in space fly touches in every world, and say how near the flights came") {
+    SpaceProblem problem = read("tank_shell");
+    problem.uncertainty.emplace();
+    problem.goals = {touch_of_shell(5, 5, 1), place(2.5, -3, 4)};
+    const SpaceSearchResult found = solved(problem);
+    REQUIRE(found.status == Status::solved);
+    REQUIRE(found.certificate);
+    CHECK(found.certificate->is_given);
+    const auto& clearance_m = found.certificate->clearance_m;
+    CHECK(clearance_m.p01 <= clearance_m.p10);
+    CHECK(clearance_m.p10 <= clearance_m.p50);
+    CHECK(clearance_m.p01 > 0);
+    const SpaceProblemModel model(problem);
+    REQUIRE(found.certificate->worst.size() > 2);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const WorldSample& sample = found.certificate->worst[i];
+        SpaceExecutionSettings settings;
+        settings.world = draw_space_world(*problem.uncertainty, problem.robot, problem.planner.seed, sample.world);
+        const SpaceFlight flight = model.execute(*found.plan, settings);
+        CHECK(flight.outcome == Outcome::ok);
+        CHECK(sample.min_clearance_m == Approx(flight.min_clearance_m).epsilon(0.1).margin(0.021));
+    }
+}
+
+TEST_CASE("OMPL's planners plan in space, twice with the same bytes, and their plans are checked") {
+    SpaceProblem problem = read("around_a_girder");
+    SpaceGoal goal = place(1, -1, 2.5);
+    std::get<SpaceConfigurationGoal>(goal.kind).tolerance_m = 0.3;
+    problem.goals = {goal};
+    problem.planner.max_iterations = 5000;
+    for (const Variant variant : {Variant::mp_arm, Variant::mp_arm_ada}) {
+        problem.planner.variant = variant;
+        for (const AlgorithmInfo& algorithm : algorithms()) {
+            if (!algorithm.plans_for(variant)) {
+                continue;
+            }
+            CAPTURE(name_of(variant), algorithm.name);
+            problem.planner.algorithm = algorithm.name;
+            const SpaceSearchResult found = solved(problem);
+            REQUIRE(found.status == Status::solved);
+            CHECK(found.execution->outcome == Outcome::ok);
+            CHECK(found.execution->goals[0].is_met);
+            CHECK(found.plan->reference.front().point.position[space::x] == problem.start.position_m[0]);
+            for (const SpaceSegment& segment : found.plan->segments()) {
+                CHECK(keeps_limits(segment, problem.motion));
+            }
+            const SpaceSearchResult again = solved(problem);
+            CHECK(again.cost == found.cost);
+            CHECK(again.planning.iterations == found.planning.iterations);
+        }
+    }
+    problem.motion.yaw.mode = YawMode::toward;
+    problem.planner.algorithm = "sst";
+    REQUIRE(space_planning_errors(problem).size() == 1);
+    CHECK(space_planning_errors(problem)[0].key == "motion.yaw");
+}
