@@ -19,7 +19,7 @@ namespace {
 FlightState hovered(const Robot& robot, const World& in, double arm_rad, int ticks) {
     const FlightModel model = in_free_air(robot);
     const FlownWorld world = make_world(robot, in);
-    FlightState state = model.state_at(level_at({0, 2, arm_rad}));
+    FlightState state = model.state_at(level_at(Configuration{0, 2, arm_rad}));
     state.world = memory_at_start(world, state.plant);
     const ReferenceSegment segment(at_rest({0, 2, arm_rad}), at_rest({0, 2, arm_rad}), ticks, model.tick().tick_s);
     simulation::FlightEffectOf calm{simulation::NoEffect{}};
