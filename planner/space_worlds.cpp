@@ -422,7 +422,8 @@ Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const Spac
     // failed as a whole, they are those of an equal share among so many.
     constexpr double thoroughly_screened = 9;
     const double part_of_worlds = std::min(1.0, thoroughly_screened / static_cast<double>(goals()));
-    const double confidence = before.attempts > 0 ? 0.8 : 1 - std::pow(0.5, part_of_worlds);
+    constexpr double first_doubt = 0.75;
+    const double confidence = before.attempts > 0 ? 0.8 : 1 - std::pow(first_doubt, part_of_worlds);
     const std::size_t visited = before.goals.size();
     const SpacePlan whole = before.plan.followed_by(part);
     const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
