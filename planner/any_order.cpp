@@ -435,7 +435,9 @@ void AnyOrder<Family>::explain() {
         }
         LeftOutTarget left_out{target, LeftOutReason::no_flight, std::nullopt};
         const double energy_j = energy_with(table_.estimates(), best_order_.places, target);
-        if (is_limited() && std::isfinite(energy_j) && !table_.is_out_of_reach(target)) {
+        // Where there is no flight at all, it is not for its energy that one to a cheap target is missing.
+        const bool is_for_energy = has_way() || energy_j > problem_.energy_budget_j.value_or(energy_j);
+        if (is_limited() && std::isfinite(energy_j) && is_for_energy && !table_.is_out_of_reach(target)) {
             left_out = {target, LeftOutReason::energy_budget, energy_j};
         } else if (has_way()) {
             best_.status = Status::approximate;

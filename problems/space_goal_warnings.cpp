@@ -127,7 +127,7 @@ std::vector<KeyError> space_goal_warnings(const SpaceProblem& problem) {
     const GoalCheck check(problem);
     std::vector<KeyError> warnings;
     auto next = all.begin();
-    for (const SpaceGoal& goal : problem.goals) {
+    for (const SpaceGoal& goal : goals_of(problem)) {
         const auto end = next + static_cast<std::ptrdiff_t>(std::max<std::size_t>(1, goal.any_of.size()));
         std::vector<KeyError> of_goal;
         for (; next != end; ++next) {
