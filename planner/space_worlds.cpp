@@ -418,12 +418,10 @@ const FlownFleetOf<Space>& SpaceProblemWorlds::screened(const CourseOf<Space>& c
 
 Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const SpacePlan& part,
                                        const StopCondition& is_over, const WorldCounter& counter) {
-    // See ProblemWorlds::screen(). Of many goals each would take far more worlds than the whole: until a flight has
-    // failed as a whole, they are those of an equal share among so many.
-    constexpr double thoroughly_screened = 9;
-    const double part_of_worlds = std::min(1.0, thoroughly_screened / static_cast<double>(goals()));
-    constexpr double first_doubt = 0.75;
-    const double confidence = before.attempts > 0 ? 0.8 : 1 - std::pow(first_doubt, part_of_worlds);
+    // Until a flight has failed as a whole, a part only has to do as well as the whole must. To tell that each keeps its
+    // share of the failures takes thousands of worlds, and most parts take next to nothing of it.
+    constexpr double first_confidence = 0.5, confidence = 0.8;
+    const bool is_first = before.attempts == 0;
     const std::size_t visited = before.goals.size();
     const SpacePlan whole = before.plan.followed_by(part);
     const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
@@ -437,9 +435,10 @@ Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const Spac
         after.vehicles.insert(after.vehicles.end(), vehicles.begin(), vehicles.end());
         return samples;
     };
-    const double share = problem_.planner.max_failure_probability / static_cast<double>(goals());
+    const double share = problem_.planner.max_failure_probability / (is_first ? 1 : static_cast<double>(goals()));
     Certificate certificate =
-        tested({first_screening, fly}, is_over, counter, CertificateRecord(share, confidence, 1, visited));
+        tested({first_screening, fly}, is_over, counter,
+               CertificateRecord(share, is_first ? first_confidence : confidence, 1, visited));
     if (certificate.is_given) {
         screened_[visited + 1] = std::move(after);
     }

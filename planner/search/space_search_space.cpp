@@ -148,8 +148,10 @@ SpaceConfiguration SpaceSearchSpace::sample_in_transport(Random& random) const {
 }
 
 std::optional<SpaceConfiguration> SpaceSearchSpace::sample_goal(Random& random) const {
-    // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance.
-    const double share = random.chance(0.5) ? 0 : usable_tolerance_share * random.uniform(0, 1);
+    // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance; of this part
+    // worlds leave less.
+    const double usable = model_.problem().uncertainty ? 0.5 * usable_tolerance_share : usable_tolerance_share;
+    const double share = random.chance(0.5) ? 0 : usable * random.uniform(0, 1);
     const SpaceGoalSample drawn = sampler_.sample(random, share);
     return drawn.place ? std::optional(drawn.place->at) : std::nullopt;
 }
