@@ -5,7 +5,6 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
-#include <iterator>
 #include <numbers>
 
 #include "downwash/base/infinity.hpp"
@@ -78,6 +77,8 @@ VectorXd holding_nm(const MatrixXd& mass, const VectorXd& wrench) {
 /// Gains of the disturbance observer over the frequency of the joints: a faster observer holds the same arm with slower
 /// joints. The first that leaves enough to every joint is taken.
 constexpr double observer_shares[] = {0.5, 1, 1.5, 2, 3};
+/// Of the stiffness that the arm asks for. Where the delay does not allow all of it, less leaves more to both sides.
+constexpr double stiffness_parts[] = {1, 0.7};
 
 /// The stiffness that is left to hold an arm, over the square of the joints' frequency w, with an observer of c w.
 /// Both make w^2 (1 + 2 c). What integrates takes 2 c / (2 + c) of it at half the gain, and the delay 0.2 c.
@@ -196,12 +197,13 @@ SpaceInversion designed_inversion(const SpaceRobot& robot, SpaceBandwidths wante
         wanted.attitude_rad_s = std::min(share_of_lag / (robot.plant.time_constant_s + late_s), max_attitude_rad_s);
     }
     const double asked_1_s2 = wanted.joint_rad_s ? 0 : greatest_joint_stiffness_asked_1_s2(robot);
-    const auto with_share = [&](double observer_share) {
+    const auto designed = [&](double observer_share, double stiffness_part) {
         SpaceBandwidths bandwidths = wanted;
         if (!wanted.joint_rad_s) {
-            bandwidths.joint_rad_s = std::min(
-                std::max(SpaceBandwidths::least_joint_rad_s, std::sqrt(asked_1_s2 / stiffness_share(observer_share))),
-                share_of_lag / late_s);
+            bandwidths.joint_rad_s =
+                std::min(std::max(SpaceBandwidths::least_joint_rad_s,
+                                  std::sqrt(stiffness_part * asked_1_s2 / stiffness_share(observer_share))),
+                         share_of_lag / late_s);
         }
         if (!wanted.observer_gain_1_s) {
             bandwidths.observer_gain_1_s =
@@ -209,17 +211,22 @@ SpaceInversion designed_inversion(const SpaceRobot& robot, SpaceBandwidths wante
         }
         return law_for(robot, bandwidths);
     };
-    SpaceInversion best = with_share(observer_shares[0]);
+    SpaceInversion best = designed(observer_shares[0], stiffness_parts[0]);
     if (wanted.joint_rad_s || wanted.observer_gain_1_s) {
         return best;
     }
-    double best_part = part_of_margins(robot, best);
-    for (std::size_t i = 1; i < std::size(observer_shares) && best_part < 1; ++i) {
-        const SpaceInversion law = with_share(observer_shares[i]);
-        const double part = part_of_margins(robot, law);
-        if (part > best_part) {
-            best = law;
-            best_part = part;
+    double best_part = 0;
+    for (const double observer_share : observer_shares) {
+        for (const double stiffness_part : stiffness_parts) {
+            const SpaceInversion law = designed(observer_share, stiffness_part);
+            const double part = part_of_margins(robot, law);
+            if (part >= 1) {
+                return law;
+            }
+            if (part > best_part) {
+                best = law;
+                best_part = part;
+            }
         }
     }
     return best;

@@ -26,7 +26,7 @@ namespace downwash {
 
 /// The gains of a model inversion for a robot (gains_for()). Where a bandwidth is empty it is as fast as the lags of
 /// rotors and controller allow (tilt), or as the arm asks for (joints and observer: the slowest observer, from half of
-/// the joints' frequency, that leaves 6 dB and 30 deg to every joint in the examined poses, or the best one; where
+/// the joints' frequency, that leaves 6 dB and 30 deg to every joint in the examined poses, or what leaves most; where
 /// either is given the other does not depend on margins). Of the robot's controller delay and rate count. Joints have
 /// no integral beside an observer, which integrates already.
 [[nodiscard]] DOWNWASH_EXPORT SpaceInversion designed_inversion(const SpaceRobot& robot, SpaceBandwidths wanted = {});
