@@ -19,7 +19,18 @@ cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DDOWNWASH_UNIT
 cmake --build "$build" --parallel "${JOBS:-1}" --target downwash test_simulation
 "$build/tests/test_simulation" '*with any arm*,*space side by side*'
 
-cat >"$work/problem.yaml" <<EOF2
+# 6 dB and 30 degrees at every loop, as designed gains leave them to the robots that every build flies.
+"$build/downwash" margins "$root/problems/robots/neo11_arm5.yaml" --json >"$work/margins.json"
+python3 - "$work/margins.json" <<'EOF'
+import json
+import sys
+
+for row in json.load(open(sys.argv[1]))["margins"]:
+    if (row["gain_margin_db"] or 99) < 6 or (row["phase_margin_deg"] or 360) < 30:
+        sys.exit(f"neo11_arm5 has too little margin: {row}")
+EOF
+
+cat >"$work/problem.yaml" <<EOF
 schema: downwash/problem/v1
 name: five_joints
 description: Look at a post from the side with an arm of five joints.
@@ -34,7 +45,7 @@ aero:
 start: {x_m: -2, y_m: 0, z_m: 1.5, yaw_deg: 0}
 goal:
   end_effector: {position_m: [0, 1, 1.5], tolerance_m: 0.1, direction: [0, -1, 0], direction_tolerance_deg: 20}
-EOF2
+EOF
 "$build/downwash" check "$work/problem.yaml"
 "$build/downwash" solve "$work/problem.yaml" --seed 1 --max-iterations 200 --stop-at-first --no-cache --quiet --out "$work/run"
 "$build/downwash" execute "$work/problem.yaml" --plan "$work/run" --quiet --out "$work/again"
