@@ -80,8 +80,7 @@ SpaceStart start_of(const SpaceProblemModel& model, const AnySpaceState& state, 
     start.joint_rates_rad_s = first(motion.joint_rates_rad_s, joints);
     start.reference.emplace(first(reference.position, axes), first(reference.velocity, axes),
                             first(reference.acceleration, axes));
-    start.carry.rotor_thrust_n.assign(state.plant.thrust_n, state.plant.thrust_n + robot.plant.rotors.size());
-    start.carry.controller_memory = first(state.memory.number, memory_size(robot.controller.law, joints));
+    start.carry = carry_of(robot, state);
     return start;
 }
 
@@ -120,10 +119,9 @@ SpaceFlight SpaceProblemModel::fly(const SpacePlan& plan, const SpaceExecutionSe
     flight.goals = goals;
     flight.is_over = settings.is_over;
     flight.energy_budget_j = problem_.energy_budget_j;
-    if (!settings.start) {
-        flight.carry = problem_.start.carry;
-    }
-    return downwash::fly(robot, plan, settings.start.value_or(start_motion(problem_.start)), flight);
+    flight.carry = settings.start ? carry_of(robot, *settings.start) : problem_.start.carry;
+    return downwash::fly(robot, plan, settings.start ? motion_of(*settings.start) : start_motion(problem_.start),
+                         flight);
 }
 
 }  // namespace downwash

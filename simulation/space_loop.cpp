@@ -36,6 +36,13 @@ int memory_size(const SpaceLaw& law, int joints) noexcept {
         law);
 }
 
+SpaceCarry carry_of(const SpaceRobot& robot, const AnySpaceState& vehicle) {
+    const double* const thrust_n = vehicle.plant.thrust_n;
+    const double* const memory = vehicle.memory.number;
+    return {{thrust_n, thrust_n + robot.plant.rotors.size()},
+            {memory, memory + memory_size(robot.controller.law, robot.joints())}};
+}
+
 namespace simulation {
 
 // space_loop_of.hpp has the arithmetic; this file needs the names alone.

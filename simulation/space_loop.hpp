@@ -45,6 +45,9 @@ struct SpaceCarry {
 /// How many numbers a law remembers that flies a vehicle with so many joints.
 [[nodiscard]] DOWNWASH_EXPORT int memory_size(const SpaceLaw& law, int joints) noexcept;
 
+/// What a vehicle of a robot carries.
+[[nodiscard]] DOWNWASH_EXPORT SpaceCarry carry_of(const SpaceRobot& robot, const AnySpaceState& vehicle);
+
 /// The vehicle in space at one control tick and the commands it holds until the next; SI units.
 struct SpaceFlightRow {
     double t_s = 0;
