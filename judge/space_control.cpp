@@ -136,6 +136,35 @@ SpaceControlMemory SpaceControl::at_start(const SpaceCoordinates& seen) const {
     return memory;
 }
 
+SpaceControlMemory SpaceControl::memory_of(const std::vector<double>& numbers) const {
+    const int n = nominal_.joint_count();
+    SpaceControlMemory memory;
+    auto next = numbers.begin();
+    const auto take = [&next](auto& into) {
+        std::copy_n(next, into.size(), into.data());
+        next += into.size();
+    };
+    const bool is_inversion = std::holds_alternative<SpaceInversion>(law_);
+    take(is_inversion ? memory.position_integral : memory.velocity_integral);
+    take(memory.rate_integral);
+    memory.joint_integral.resize(n);
+    take(memory.joint_integral);
+    next += n == 0 ? 1 : 0;  // without joints there is one number that means nothing
+    if (!is_inversion) {
+        take(memory.velocity_before);
+        take(memory.rate_before);
+        return memory;
+    }
+    take(memory.direction);
+    take(memory.direction_rate);
+    take(memory.rate_reference);
+    if (observer_) {  // the numbers are the estimate less what a momentum of zero would add to it
+        memory.observer = {VectorXd(6 + n), VectorXd::Zero(6 + n)};
+        take(memory.observer.estimate);
+    }
+    return memory;
+}
+
 SpaceCommands SpaceControl::command(const SpaceCoordinates& seen, const std::vector<double>& thrust_n,
                                     const SpacePoint& reference, const SpaceSurroundings& surfaces,
                                     SpaceControlMemory& memory) const {

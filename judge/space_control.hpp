@@ -36,6 +36,8 @@ class SpaceControl {
     [[nodiscard]] DOWNWASH_EXPORT std::vector<double> resting_thrust_n() const;
     /// The memory of a law that has come to rest.
     [[nodiscard]] DOWNWASH_EXPORT SpaceControlMemory at_start(const SpaceCoordinates& seen) const;
+    /// The memory in the middle of a flight. @param numbers as SpaceCarry::controller_memory has them
+    [[nodiscard]] SpaceControlMemory memory_of(const std::vector<double>& numbers) const;
 
     /// One tick. @param thrust_n that the rotors' lag has reached   @param surfaces in their nominal places
     [[nodiscard]] DOWNWASH_EXPORT SpaceCommands command(const SpaceCoordinates& seen,

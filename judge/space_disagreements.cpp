@@ -124,6 +124,10 @@ bool flight_touches(const SpaceJudgedFlight& flight) {
 /// Where a plan has to begin; any yaw where the problem gives an attitude.
 SpacePoint begin_of(const SpaceStart& start, const SpacePoint& first) {
     SpacePoint begin;
+    if (const auto& reference = start.reference) {
+        std::copy(reference->position.begin(), reference->position.end(), begin.position);
+        return begin;
+    }
     std::copy(start.position_m.begin(), start.position_m.end(), begin.position);
     begin.position[space::yaw] = start.attitude ? first.position[space::yaw] : start.yaw_rad;
     std::copy(start.joints_rad.begin(), start.joints_rad.end(), begin.position + space::first_joint);

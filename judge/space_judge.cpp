@@ -139,9 +139,11 @@ SpaceJudgedFlight SpaceJudge::fly(const SpacePlan& plan, const SpaceFlightCondit
     const SpacePlant plant(vehicle, surfaces);
     const SpaceCoordinates start = coordinates_of(conditions.start, shared.robot.joints());
     const double tick_s = shared.control.tick_s();
-    const bool hovers_first = conditions.world && is_at_rest(start);
-    SpaceLoop loop(shared.control, nominal_surfaces, plant, hovers_first ? without_noise(world) : world, shared.robot,
-                   start);
+    const bool is_in_flight = !conditions.rotor_thrust_n.empty() || !conditions.controller_memory.empty();
+    const bool hovers_first = conditions.world && !is_in_flight && is_at_rest(start);
+    SpaceLoop loop(shared.control, nominal_surfaces, plant, hovers_first ? judge::without_noise(world) : world,
+                   shared.robot, start);
+    loop.carry(conditions.rotor_thrust_n, conditions.controller_memory);
     SpaceJudgedFlight flight;
     if (hovers_first) {
         if (!settles(loop, start, tick_s)) {

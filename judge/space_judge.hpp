@@ -19,6 +19,7 @@ namespace downwash::judge {
 /// How to fly.
 struct SpaceFlightConditions {
     SpaceJudgedMotion start;
+    std::vector<double> rotor_thrust_n, controller_memory;  ///< of a vehicle in flight: see SpaceCarry
     std::int64_t hold_ticks = 0;  ///< hover after the last knot, >= 0; with goals these say it
     bool aero = true;             ///< false: surfaces have no effect on the rotors
     /// Empty: everything is nominal. In a world a vehicle that starts level and at rest has hovered there for 20 s

@@ -29,6 +29,15 @@ SpaceLoop::SpaceLoop(const SpaceControl& control, const SpaceSurroundings& nomin
       gusts_(world, control.tick_s()),
       wind_(Eigen::Vector3d::Zero()) {}
 
+void SpaceLoop::carry(const std::vector<double>& rotor_thrust_n, const std::vector<double>& controller_memory) {
+    if (!rotor_thrust_n.empty()) {
+        state_.thrust_n = rotor_thrust_n;
+    }
+    if (!controller_memory.empty()) {
+        memory_ = control_.memory_of(controller_memory);
+    }
+}
+
 void SpaceLoop::next(std::int64_t tick, const SpacePoint& reference, bool is_at_surface) {
     const SpaceTape tape = tape_at(world_, tick);
     const SpaceCoordinates from = now_;

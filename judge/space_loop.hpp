@@ -14,6 +14,8 @@ class SpaceLoop {
     /// @pre all but the start outlive this
     DOWNWASH_EXPORT SpaceLoop(const SpaceControl& control, const SpaceSurroundings& nominal, const SpacePlant& plant,
                               const SpaceWorld& world, const SpaceRobot& robot, const SpaceCoordinates& start);
+    /// What a vehicle in flight carries; empty lists change nothing.
+    void carry(const std::vector<double>& rotor_thrust_n, const std::vector<double>& controller_memory);
 
     [[nodiscard]] const SpacePlantState& state() const noexcept { return state_; }
     /// Another plant from here on: one that touches something, or none. @pre it outlives the loop

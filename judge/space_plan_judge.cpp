@@ -55,6 +55,8 @@ const SpaceProblem& SpacePlanJudge::problem() const noexcept {
 SpaceJudgedFlight SpacePlanJudge::fly(const SpacePlan& plan, bool aero, const std::optional<SpaceWorld>& world) const {
     SpaceFlightConditions conditions;
     conditions.start = motion_of(problem().start);
+    conditions.rotor_thrust_n = problem().start.carry.rotor_thrust_n;
+    conditions.controller_memory = problem().start.carry.controller_memory;
     conditions.goals = goals_of(problem());
     conditions.in_any_order = leaves_order_open(problem());
     conditions.energy_budget_j = problem().energy_budget_j;

@@ -5,9 +5,9 @@
 #include <system_error>
 #include <utility>
 
-#include "downwash/planner/braking.hpp"
 #include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/space_worlds.hpp"
+#include "downwash/planner/stop_finder.hpp"
 #include "downwash/search/obstacle_labels.hpp"
 
 namespace downwash::planning {

@@ -16,13 +16,14 @@
 
 namespace downwash::planning {
 
-class StopFinder;
+template <class Family>
+class StopFinderOf;
 
 /// What plans have to pass beside the rules of the search itself. Without one they need not.
 template <class Family>
 struct PlanChecksOf {
     using ProblemWorlds = typename Family::ProblemWorlds;
-    using StopFinder = typename Family::StopFinder;
+    using StopFinder = StopFinderOf<Family>;
 
     ProblemWorlds* worlds = nullptr;    ///< in which edges are flown and plans certified
     StopFinder* stop_finder = nullptr;  ///< by which a plan must not become clearly worse
@@ -122,7 +123,7 @@ class CandidateCheckOf {
     std::optional<DirectFlight> flight_;           ///< made last
     std::optional<Obstruction> discarded_;         ///< what discarded the last plan that was
     std::optional<Certificate> certificate_;       ///< certificate of the plan that was executed last
-    std::optional<SafeStops> stops_;               ///< along that plan
+    std::optional<SafeStopsOf<Family>> stops_;     ///< along that plan
     std::vector<Counterexample> counterexamples_;  ///< in which that plan failed
     std::optional<std::size_t> weakest_;           ///< part of that plan
     /// The plan without a certificate that has the lowest bound of its failure probability: one that was

@@ -125,7 +125,7 @@ DirectFlightOf<Space> fly_directly(const SpaceProblemModel& model, const AnySpac
     const SpaceGoalRule rule(model.problem().robot, model.shared_scene(), goals);
     SpaceExecutionSettings settings;
     settings.goals = &rule;
-    settings.start = motion_of(start);
+    settings.start = start;
     settings.is_over = is_over;
     SpaceFlight execution = model.execute(plan, settings);
     return {std::move(execution), clock.seconds()};

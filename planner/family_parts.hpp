@@ -6,7 +6,6 @@
 #include "downwash/base/stop_condition.hpp"
 #include "downwash/planner/direct_flight.hpp"
 #include "downwash/planner/planner_model.hpp"
-#include "downwash/planner/safe_stops.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/objective.hpp"
 #include "downwash/search/search_task.hpp"
@@ -83,11 +82,5 @@ template <class AnyFound>
 /// Where a direct flight that does not count came nearest to an obstacle or, if that is not why, where it ended.
 [[nodiscard]] Obstruction obstruction_of(const Execution& flight, const SearchTask& task);
 [[nodiscard]] SpaceObstruction obstruction_of(const SpaceFlight& flight, const SearchTaskOf<Space>& task);
-
-/// Safe stops are not looked for in space yet.
-class NoStopFinder {
- public:
-    [[nodiscard]] SafeStops along(const SpacePlan& /*plan*/, const StopCondition& /*is_over*/) { return {}; }
-};
 
 }  // namespace downwash::planning

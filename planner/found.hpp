@@ -34,10 +34,10 @@ struct FoundOf {
     double cost = 0;                  ///< the planner's own figure; 0 without a plan
     std::optional<Plan> plan;         ///< empty with Status::none
     std::optional<VisitOrder> order;  ///< order in which the plan visits targets; empty where the problem has none
-    std::optional<Certificate> certificate;  ///< certificate of the plan; empty if none was asked for
-    std::optional<SafeStops> safe_stops;     ///< safe stops along a plan that solves the problem, if asked for
-    std::optional<Execution> execution;      ///< the whole plan flown from the start with direct aerodynamics
-    double flight_wall_s = 0;                ///< time that this flight took to simulate [s]
+    std::optional<Certificate> certificate;         ///< certificate of the plan; empty if none was asked for
+    std::optional<SafeStopsOf<Family>> safe_stops;  ///< safe stops along a plan that solves the problem, if asked for
+    std::optional<Execution> execution;             ///< the whole plan flown from the start with direct aerodynamics
+    double flight_wall_s = 0;                       ///< time that this flight took to simulate [s]
     /// How near to the goal region a search without a plan brought the vehicle [m].
     std::optional<double> nearest_approach_m;
     std::optional<Obstruction> obstruction;  ///< what stopped a search by flights before the goal

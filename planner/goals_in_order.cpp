@@ -3,11 +3,11 @@
 #include <optional>
 #include <utility>
 
-#include "downwash/planner/braking.hpp"
 #include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goal_search.hpp"
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/space_worlds.hpp"
+#include "downwash/planner/stop_finder.hpp"
 #include "downwash/planner/stopwatch.hpp"
 #include "downwash/planner/worlds.hpp"
 
@@ -70,7 +70,12 @@ SearchResultOf<Space> search_in_order(const SpaceProblem& problem, const Planner
     if (problem.uncertainty) {
         worlds.emplace(problem, model, options.threads);
     }
-    const PlanChecksOf<Space> checks{worlds ? &*worlds : nullptr, nullptr};
+    std::optional<StopFinderOf<Space>> stop_finder;
+    if (options.finds_stops) {
+        stop_finder.emplace(problem, model.flight, model.true_map,
+                            problem.uncertainty ? search_worlds(problem) : std::vector<SpaceWorld>(), options.threads);
+    }
+    const PlanChecksOf<Space> checks{worlds ? &*worlds : nullptr, stop_finder ? &*stop_finder : nullptr};
     return problem.goals.size() == 1 ? search_alone(problem, model, checks, options, attempts)
                                      : search_in_turn(problem, model, checks, options, effort, attempts);
 }

@@ -5,25 +5,26 @@
 #include <numeric>
 #include <utility>
 
-#include "downwash/aeromap/map_cache.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/stop_condition.hpp"
 #include "downwash/planner/braking.hpp"
-#include "downwash/planner/direct_flight.hpp"
-#include "downwash/planner/solve.hpp"
+#include "downwash/planner/family_parts.hpp"
+#include "downwash/planner/planner_parts.hpp"
+#include "downwash/planner/space_worlds.hpp"
 #include "downwash/planner/stopwatch.hpp"
-#include "downwash/planner/world_flights.hpp"
 #include "downwash/planner/worlds.hpp"
 #include "downwash/search/search_space.hpp"
+#include "downwash/simulation/flight.hpp"
 
 namespace downwash {
 namespace {
 
 /// The places with the most places beyond them, those nearer to the root first.
-std::vector<Configuration> carrying_places(const std::vector<TreeNode>& tree, std::size_t most) {
+template <class Node>
+auto carrying_places(const std::vector<Node>& tree, std::size_t most) {
     std::vector<std::size_t> beyond(tree.size(), 1);
     for (std::size_t i = tree.size(); i-- > 0;) {  // parents may come later in the list, after a rewiring
-        for (int parent = tree[i].parent; parent != TreeNode::no_parent;
+        for (int parent = tree[i].parent; parent != Node::no_parent;
              parent = tree[static_cast<std::size_t>(parent)].parent) {
             ++beyond[static_cast<std::size_t>(parent)];
         }
@@ -31,9 +32,9 @@ std::vector<Configuration> carrying_places(const std::vector<TreeNode>& tree, st
     std::vector<std::size_t> order(tree.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return beyond[a] > beyond[b]; });
-    std::vector<Configuration> places;
+    std::vector<decltype(Node::at)> places;
     for (const std::size_t i : order) {
-        if (places.size() < most && beyond[i] > 1 && tree[i].parent != TreeNode::no_parent) {
+        if (places.size() < most && beyond[i] > 1 && tree[i].parent != Node::no_parent) {
             places.push_back(tree[i].at);
         }
     }
@@ -41,7 +42,8 @@ std::vector<Configuration> carrying_places(const std::vector<TreeNode>& tree, st
 }
 
 /// Checks the limits of PlannerSettings. No time at all is allowed, too: then there is only the stop.
-void throw_if_out_of_range(const ReplanOptions& options) {
+template <class Options>
+void throw_if_out_of_range(const Options& options) {
     constexpr double most_s = 1e6;
     constexpr std::uint64_t most_iterations = 1'000'000'000'000'000;
     if (options.time_limit_s && !(*options.time_limit_s <= most_s)) {
@@ -52,16 +54,6 @@ void throw_if_out_of_range(const ReplanOptions& options) {
         throw_input_error("is " + std::to_string(*options.max_iterations) + ": expected at most 10^15",
                           "max_iterations");
     }
-}
-
-bool is_finite(const Start& start) {
-    const ReferencePoint reference = start.reference.value_or(ReferencePoint{});
-    double sum = start.pitch_rad + start.pitch_rate_rad_s;
-    for (std::size_t axis = 0; axis < max_axes; ++axis) {
-        sum += start.at[axis] + start.velocity[axis];
-        sum += reference.position[axis] + reference.velocity[axis] + reference.acceleration[axis];
-    }
-    return std::isfinite(sum);
 }
 
 }  // namespace
@@ -81,14 +73,16 @@ std::string_view name_of(Advice advice) {
 }
 
 /// One call of replan().
-struct Planner::Call {
+template <class Family>
+struct PlannerOf<Family>::Call {
     const ReplanOptions& options;
     planning::Stopwatch clock;
     Answer best;
 };
 
-Planner::Planner(const Problem& problem, SolveOptions options) : options_(std::move(options)) {
-    PlannableProblem checked = plannable(problem);
+template <class Family>
+PlannerOf<Family>::PlannerOf(const Problem& problem, SolveOptions options) : options_(std::move(options)) {
+    auto checked = planning::checked(problem);
     problem_ = std::move(checked.problem);
     model_ = std::move(checked.model);
     options_.map = nullptr;
@@ -98,22 +92,31 @@ Planner::Planner(const Problem& problem, SolveOptions options) : options_(std::m
     options_.threads = std::max(1, options_.threads);
 }
 
-Planner::~Planner() = default;
+template <class Family>
+PlannerOf<Family>::~PlannerOf() = default;
 
-const Solution& Planner::solve(std::stop_token stop) {
+template <class Family>
+auto PlannerOf<Family>::solve(std::stop_token stop) -> const Solution& {
     SolveOptions options = options_;
     options.stop = std::move(stop);
     options.map = unmapped_.empty() ? map_ : nullptr;  // a stopped replan() may have left the former one
-    solution_ = downwash::solve(PlannableProblem{problem_, model_}, options);
+    solution_ = planning::solved(problem_, model_, options);
     remember(solution_);
     if (solution_.status == Status::solved) {
-        problem_ = in_order(problem_, solution_.order);
-        problem_.energy_budget_j.reset();  // how much of it a vehicle has left, it knows itself
+        planning::take_order(problem_, solution_);
+        bind();
     }
     return solution_;
 }
 
-void Planner::remember(const Solution& solution) {
+/// The problem has another start or other goals.
+template <class Family>
+void PlannerOf<Family>::bind() {
+    model_ = planning::model_of(problem_, model_);
+}
+
+template <class Family>
+void PlannerOf<Family>::remember(const Solution& solution) {
     constexpr std::size_t most_places = 64;
     if (solution.map) {
         map_ = solution.map;
@@ -127,12 +130,14 @@ void Planner::remember(const Solution& solution) {
     }
 }
 
-std::optional<Answer> Planner::latest() const {
+template <class Family>
+auto PlannerOf<Family>::latest() const -> std::optional<Answer> {
     const std::scoped_lock lock(mutex_);
     return latest_;
 }
 
-void Planner::publish(Call& call, Answer answer) {
+template <class Family>
+void PlannerOf<Family>::publish(Call& call, Answer answer) {
     answer.after_wall_s = call.clock.seconds();
     call.best = std::move(answer);
     {
@@ -145,7 +150,8 @@ void Planner::publish(Call& call, Answer answer) {
 }
 
 /// Checks the changed problem before anything becomes another.
-void Planner::apply(const SceneChange& change) {
+template <class Family>
+void PlannerOf<Family>::apply(const SceneChange& change) {
     if (change.put.empty() && change.removed.empty() && !change.goal) {
         return;
     }
@@ -176,81 +182,52 @@ void Planner::apply(const SceneChange& change) {
     }
     next.obstacles.insert(next.obstacles.end(), change.put.begin(), change.put.end());
     if (change.goal) {
-        next.goals_before.clear();
-        next.targets.clear();
-        next.return_to.reset();
-        next.energy_budget_j.reset();
-        next.goal = *change.goal;
+        planning::set_goal(next, *change.goal);
     }
-    std::vector<KeyError> errors;
-    for (KeyError& error : problem_errors(next)) {
-        if (!error.key.starts_with("start")) {  // a vehicle is where it is
-            errors.push_back(std::move(error));
-        }
-    }
-    throw_if_any(std::move(errors));
-    if (!changed.empty()) {
-        model_ = make_flight_model(next);
-        unmapped_.insert(unmapped_.end(), changed.begin(), changed.end());
-    }
+    throw_if_any(planning::errors_beside_start(next));
     problem_ = std::move(next);
+    model_ = planning::model_of(problem_, changed.empty() ? model_ : nullptr);
+    unmapped_.insert(unmapped_.end(), changed.begin(), changed.end());
 }
 
 /// Goals whose hovers are over by a tick of the last plan need no further visit.
-void Planner::drop_visited_goals(std::int64_t tick) {
-    if (!plan_ || problem_.goals_before.empty()) {
-        return;
+template <class Family>
+void PlannerOf<Family>::drop_visited_goals(std::int64_t tick) {
+    if (plan_) {
+        planning::drop_visited(problem_, *model_, *plan_, tick);
     }
-    const std::vector<std::size_t> ends = hover_ends(*model_, plan_->reference, goals_of(problem_));
-    const auto visited =
-        std::count_if(ends.begin(), ends.end(), [&](std::size_t knot) { return plan_->reference[knot].tick <= tick; });
-    problem_.goals_before.erase(
-        problem_.goals_before.begin(),
-        problem_.goals_before.begin() + std::min<std::ptrdiff_t>(visited, std::ssize(problem_.goals_before)));
 }
 
-bool Planner::certifies() const {
+template <class Family>
+bool PlannerOf<Family>::certifies() const {
     return problem_.uncertainty && problem_.planner.certify;
 }
 
 /// The worlds of a search, which are chosen so that dangers come early; none without an uncertainty.
-std::vector<FlownWorld> Planner::worlds() const {
+template <class Family>
+auto PlannerOf<Family>::worlds() const -> std::vector<FlownWorld> {
     return problem_.uncertainty ? planning::search_worlds(problem_) : std::vector<FlownWorld>{};
 }
 
-bool Planner::can_keep(const Plan& left, const StopCondition& is_over, double& cost) const {
-    const Execution flight = execute(*model_, start_state(*model_, problem_.start), left.reference, goals_of(problem_),
-                                     problem_.aero.enabled);
-    cost = cost_of(flight, problem_.planner.objective);
+template <class Family>
+bool PlannerOf<Family>::can_keep(const Plan& left, const StopCondition& is_over, double& cost) const {
+    const auto flight = planning::executed(problem_, *model_, left);
+    cost = planning::cost_when_executed(flight, problem_.planner.objective);
     if (!planning::is_good(flight, problem_.planner.safety_margin_m)) {
         return false;
     }
     const std::vector<FlownWorld> in = worlds();
-    if (in.empty()) {
-        return true;
-    }
-    WorldFlights flights(problem_, model_, map_, options_.threads);
-    const std::vector<WorldFlight> flown = flights.fly(left, goals_of(problem_).size(), in, is_over);
-    return std::all_of(flown.begin(), flown.end(),
-                       [](const WorldFlight& each) { return each.rejection == Rejection::none; });
+    const planning::PlannerModelOf<Family> model(problem_.planner.variant, model_, map_);
+    return in.empty() || planning::survives(problem_, model, options_.threads, left, in, is_over);
 }
 
-/// A map around some places of the vehicle: the one that is there, if nothing has changed over or under them.
-std::shared_ptr<const AeroMap> Planner::map_around(const Bounds& places) const {
-    if (!problem_.aero.enabled) {
-        return nullptr;
-    }
-    if (map_ && !map_->is_touched(unmapped_, rotor_extent(problem_.robot.rotors, places))) {
-        return map_;
-    }
-    return model_->make_map(places);
-}
-
-Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange& change, const ReplanOptions& options) {
+template <class Family>
+auto PlannerOf<Family>::replan(const Start& start, std::int64_t tick, const SceneChange& change,
+                               const ReplanOptions& options) -> Answer {
     Call call{options, {}, {}};
     throw_if_out_of_range(options);
     throw_if_any(start_errors(start, problem_.robot));  // it may be anywhere, but has to be of this robot
-    if (!is_finite(start)) {
+    if (!planning::is_finite(start)) {
         throw_input_error("has a number that is not finite: expected finite ones", "start");
     }
     apply(change);
@@ -262,18 +239,21 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
         drop_visited_goals(tick);
     }
     problem_.start = start;
-    const ReferencePoint reference = planning::reference_at(start);
-    Plan left{{{}}, model_->tick().tick_s};
+    bind();
+    using planning::reference_at;
+    const auto reference = reference_at(start);
+    Plan left = planning::blank_plan_of(*model_);
+    left.reference.emplace_back();
     if (plan_ && !change.goal) {
         left = plan_->rest_after(tick);
     }
     left.reference.front().point = reference;
 
-    planning::Braking braking(
-        problem_, model_, [this](const Bounds& places) { return map_around(places); }, worlds(), options_.threads);
+    planning::BrakingOf<Family> braking(problem_, model_, planning::map_around(problem_, *model_, map_, unmapped_),
+                                        worlds(), options_.threads);
     Answer first;
     first.plan = left;
-    if (auto stop = braking.best_stop(start)) {
+    if (auto stop = braking.best_stop(braking.moment_of(reference, start_state(*model_, start)))) {
         first.advice = stop->failures == 0 ? Advice::stop : Advice::none;
         first.plan = std::move(stop->plan);
     }
@@ -293,12 +273,13 @@ Answer Planner::replan(const Start& start, std::int64_t tick, const SceneChange&
 
 /// @param has_plan whether what is left leads to the goal
 /// @throws WorkStopped when a stop is requested before the search
-void Planner::find_better(Call& call, const Plan& left, bool has_plan) {
+template <class Family>
+void PlannerOf<Family>::find_better(Call& call, const Plan& left, bool has_plan) {
     const StopCondition is_over = [&call] { return call.options.stop.stop_requested(); };
     throw_if_over(is_over);
     const bool is_first_map = problem_.aero.enabled && !map_;
     if (problem_.aero.enabled && (!map_ || !unmapped_.empty())) {
-        map_ = map_ ? model_->remake_map(*map_, unmapped_) : model_->make_map(problem_.bounds, options_.map_cache);
+        map_ = planning::map_after(problem_, *model_, map_, unmapped_, options_.map_cache);
         unmapped_.clear();
     }
     double cost = 0;
@@ -307,11 +288,12 @@ void Planner::find_better(Call& call, const Plan& left, bool has_plan) {
     }
     search(call, left);
     if (is_first_map) {
-        keep_map(options_.map_cache, *map_);
+        planning::keep(options_.map_cache, *map_);
     }
 }
 
-void Planner::search(Call& call, const Plan& left) {
+template <class Family>
+void PlannerOf<Family>::search(Call& call, const Plan& left) {
     Problem next = problem_;
     next.planner.seed += ++searches_;  // certificates are flown in worlds that no earlier search has seen
     next.planner.time_limit_s = call.options.time_limit_s;
@@ -323,7 +305,7 @@ void Planner::search(Call& call, const Plan& left) {
         }
         next.planner.time_limit_s = left_s;
     }
-    if (!problem_errors(next).empty()) {
+    if (!planning::errors_of(next).empty()) {
         return;  // from where the vehicle is nothing can be planned, only stopped
     }
     SolveOptions options = options_;
@@ -331,13 +313,17 @@ void Planner::search(Call& call, const Plan& left) {
     options.map = map_;
     options.known_plan = left;
     options.known_places = places_;
-    Solution found = downwash::solve(PlannableProblem{next, model_}, options);
+    Solution found = planning::solved(next, model_, options);
+    if (found.status != Status::solved) {
+        remember(found);
+        return;
+    }
+    const double cost = planning::cost_when_executed(*found.execution, problem_.planner.objective);
     // The plan that is found may have a certificate, and what is kept has flown in the worlds of a search only.
-    const bool is_better = found.status == Status::solved &&
-                           (call.best.advice != Advice::keep || certifies() || found.execution_cost < call.best.cost);
+    const bool is_better = call.best.advice != Advice::keep || certifies() || cost < call.best.cost;
     remember(found);
     if (is_better) {
-        Answer answer{Advice::follow, *found.plan, found.execution_cost, 0, {}};
+        Answer answer{Advice::follow, *found.plan, cost, 0, {}};
         answer.solution = std::move(found);
         publish(call, std::move(answer));
     }
@@ -355,10 +341,35 @@ bool fly_along(const FlightModel& model, const AeroMap* map, const Plan& plan, s
     return true;
 }
 
-Start Planner::predicted(const Start& start, const Plan& plan, std::int64_t ticks) const {
-    FlightState state = start_state(*model_, start);
+bool fly_along(const SpaceProblemModel& model, const SurfaceVolumes* volumes, const SpacePlan& plan, std::int64_t ticks,
+               AnySpaceState& vehicle, const planning::SpaceFlightWorld& in) {
+    const SpaceProblem& problem = model.problem();
+    SpacePoolSetup setup{problem.robot};
+    if (volumes != nullptr) {
+        setup.aero = simulation::space_aero(problem.aero, problem.robot.rotor_radius_m);
+        setup.volumes = volumes;
+    }
+    SpaceFlightJob job{vehicle, {}, in.world, in.first_tick};
+    for (const SpaceSegment& segment : plan.beginning(ticks).segments()) {
+        job.legs.push_back({segment});
+    }
+    if (job.legs.empty()) {
+        return true;
+    }
+    SpacePool(setup).fly(std::span(&job, 1));
+    const SpaceFlightLeg* const rejected = job.rejected_leg();
+    vehicle = rejected != nullptr ? rejected->end : job.end();
+    return rejected == nullptr;
+}
+
+template <class Family>
+auto PlannerOf<Family>::predicted(const Start& start, const Plan& plan, std::int64_t ticks) const -> Start {
+    auto state = start_state(*model_, start);
     static_cast<void>(fly_along(*model_, map_.get(), plan, ticks, state));
     return start_of(*model_, state, plan.at(ticks));
 }
+
+template class PlannerOf<planning::Plane>;
+template class PlannerOf<planning::Space>;
 
 }  // namespace downwash

@@ -9,21 +9,32 @@
 #include <stop_token>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/planner/solution.hpp"
 #include "downwash/planner/solve_options.hpp"
+#include "downwash/planner/space_solve.hpp"
 #include "downwash/problems/problem_model.hpp"
 
 namespace downwash {
 
+/// The answer to a problem of a family.
+template <class Family>
+using SolutionOf = std::conditional_t<std::is_same_v<Family, planning::Space>, SpaceSearchResult, Solution>;
+
 /// What has changed in a problem since the last plan.
-struct SceneChange {
+template <class Family>
+struct SceneChangeOf {
+    using Goal = typename Family::Goal;
+
     std::vector<Obstacle> put;         ///< obstacles to add; a named one replaces the obstacle of that name
     std::vector<std::string> removed;  ///< names of obstacles to remove
     std::optional<Goal> goal;          ///< replaces all goals that were not visited yet
 };
+using SceneChange = SceneChangeOf<planning::Plane>;
+using SpaceSceneChange = SceneChangeOf<planning::Space>;
 
 /// What a vehicle in the air should do.
 enum class Advice : std::uint8_t {
@@ -38,18 +49,24 @@ enum class Advice : std::uint8_t {
 [[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(Advice advice);
 
 /// What to fly from a given moment on.
-struct Answer {
+template <class Family>
+struct AnswerOf {
+    using Plan = typename Family::Plan;
+
     Advice advice = Advice::none;
     /// The plan from the start on, its first knot at tick 0. With `none`, if every braking manoeuvre leaves the bounds,
     /// it is the rest of the last plan.
     Plan plan;
     double cost = 0;  ///< cost of the flight with direct aerodynamics, by the problem's objective; `keep` and `follow`
-    double after_wall_s = 0;           ///< since replan() was called
-    std::optional<Solution> solution;  ///< what the search found; `follow` only
+    double after_wall_s = 0;                     ///< since replan() was called
+    std::optional<SolutionOf<Family>> solution;  ///< what the search found; `follow` only
 };
+using Answer = AnswerOf<planning::Plane>;
+using SpaceAnswer = AnswerOf<planning::Space>;
 
 /// How to replan. Its functions must not throw.
-struct ReplanOptions {
+template <class Family>
+struct ReplanOptionsOf {
     /// Wall time of the whole call [s], at most 10^6, and iterations of the search, at most 10^15. With iterations
     /// alone the result does not depend on how fast the machine is.
     std::optional<double> time_limit_s;
@@ -57,22 +74,39 @@ struct ReplanOptions {
     std::stop_token stop;  ///< ends the call early, once it is known how to stop
     /// Called by replan()'s thread with each answer that is better than the one before; the first one is
     /// safe immediately.
-    std::function<void(const Answer&)> on_answer;
+    std::function<void(const AnswerOf<Family>&)> on_answer;
 };
+using ReplanOptions = ReplanOptionsOf<planning::Plane>;
+using SpaceReplanOptions = ReplanOptionsOf<planning::Space>;
 
 /// Replans for a vehicle in flight. It keeps scene, model, map, plan and what the last search found between calls, so
 /// that a new answer takes little time: maps are evaluated again only where the scene has changed, and a search begins
 /// with the rest of the last plan and with configurations from which the last tree grew.
 ///
 /// replan() and solve() are for one thread at a time; latest() may be called from any thread at any time.
-class DOWNWASH_EXPORT Planner {
+template <class Family>
+class DOWNWASH_EXPORT PlannerOf {
  public:
+    using Problem = typename Family::Problem;
+    using Start = typename Family::Start;
+    using Goal = typename Family::Goal;
+    using FlightModel = typename Family::FlightModel;
+    using Effects = typename Family::Effects;
+    using Configuration = typename Family::Configuration;
+    using Plan = typename Family::Plan;
+    using FlownWorld = typename Family::FlownWorld;
+    using Solution = SolutionOf<Family>;
+    using SolveOptions = SolveOptionsOf<Family>;
+    using SceneChange = SceneChangeOf<Family>;
+    using Answer = AnswerOf<Family>;
+    using ReplanOptions = ReplanOptionsOf<Family>;
+
     /// @param options as for solve(); its map, stop token and known plan are not used
     /// @throws InputError when the problem cannot be planned
-    explicit Planner(const Problem& problem, SolveOptions options = {});
-    ~Planner();
-    Planner(const Planner&) = delete;
-    Planner& operator=(const Planner&) = delete;
+    explicit PlannerOf(const Problem& problem, SolveOptions options = {});
+    ~PlannerOf();
+    PlannerOf(const PlannerOf&) = delete;
+    PlannerOf& operator=(const PlannerOf&) = delete;
 
     /// Plans from the problem's start, and keeps the plan. Targets in any order then have the order of the plan, and
     /// an energy budget is dropped: replan() does not know what the vehicle has left of it.
@@ -103,8 +137,8 @@ class DOWNWASH_EXPORT Planner {
     [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
     /// Shares ownership of the model; a change of the scene makes another one.
     [[nodiscard]] std::shared_ptr<const FlightModel> shared_model() const noexcept { return model_; }
-    /// The map of the scene as it was when one was last needed; nullptr before.
-    [[nodiscard]] const AeroMap* map() const noexcept { return map_.get(); }
+    /// The map, or the volumes, of the scene as it was when they were last needed; nullptr before.
+    [[nodiscard]] const Effects* map() const noexcept { return map_.get(); }
     /// The last plan to the goal; empty before there is one.
     [[nodiscard]] const std::optional<Plan>& plan() const noexcept { return plan_; }
 
@@ -115,7 +149,7 @@ class DOWNWASH_EXPORT Planner {
     void drop_visited_goals(std::int64_t tick);
     [[nodiscard]] bool certifies() const;
     [[nodiscard]] std::vector<FlownWorld> worlds() const;
-    [[nodiscard]] std::shared_ptr<const AeroMap> map_around(const Bounds& places) const;
+    void bind();
     [[nodiscard]] bool can_keep(const Plan& left, const StopCondition& is_over, double& cost) const;
     void find_better(Call& call, const Plan& left, bool has_plan);
     void search(Call& call, const Plan& left);
@@ -125,7 +159,7 @@ class DOWNWASH_EXPORT Planner {
     Problem problem_;
     SolveOptions options_;
     std::shared_ptr<const FlightModel> model_;
-    std::shared_ptr<const AeroMap> map_;  ///< map of the scene as it is, once it was needed
+    std::shared_ptr<const Effects> map_;  ///< map of the scene as it is, once it was needed
     std::vector<BoundingBox> unmapped_;   ///< changes that the map does not know yet
     std::optional<Plan> plan_;
     std::vector<Configuration> places_;  ///< from which the tree of the last search grew
@@ -134,6 +168,8 @@ class DOWNWASH_EXPORT Planner {
     mutable std::mutex mutex_;  ///< guards latest_
     std::optional<Answer> latest_;
 };
+using Planner = PlannerOf<planning::Plane>;
+using SpacePlanner = PlannerOf<planning::Space>;
 
 /// A vehicle after some ticks along a plan, through a map; rules are not checked.
 /// @param vehicle at the plan's start, replaced by the one later   @param map nullptr: surfaces do not act
@@ -141,5 +177,8 @@ class DOWNWASH_EXPORT Planner {
 /// @return whether it is still stable and flyable
 DOWNWASH_EXPORT bool fly_along(const FlightModel& model, const AeroMap* map, const Plan& plan, std::int64_t ticks,
                                FlightState& vehicle, const FlightWorld& in = {});
+/// The same in space.
+DOWNWASH_EXPORT bool fly_along(const SpaceProblemModel& model, const SurfaceVolumes* volumes, const SpacePlan& plan,
+                               std::int64_t ticks, AnySpaceState& vehicle, const planning::SpaceFlightWorld& in = {});
 
 }  // namespace downwash

@@ -4,12 +4,15 @@
 #include <optional>
 #include <vector>
 
-#include "downwash/controllers/configuration.hpp"
+#include "downwash/search/family.hpp"
 
 namespace downwash {
 
 /// Where a vehicle that follows a plan can break off and hover.
-struct SafeStops {
+template <class Family>
+struct SafeStopsOf {
+    using Configuration = typename Family::Configuration;
+
     struct Moment {
         std::int64_t tick = 0;
         std::optional<Configuration>
@@ -19,9 +22,11 @@ struct SafeStops {
     std::vector<Moment> moments;  ///< moments at each knot, and at most half a second apart
     double share_without = 0;     ///< share of the plan's time, without the last hover, that has no safe stop
 };
+using SafeStops = SafeStopsOf<planning::Plane>;
 
 /// Whether a plan has no safe stop for clearly more of its time than another one: by a hundredth of it.
-[[nodiscard]] inline bool is_clearly_worse(const SafeStops& plan, const SafeStops& other) {
+template <class Family>
+[[nodiscard]] bool is_clearly_worse(const SafeStopsOf<Family>& plan, const SafeStopsOf<Family>& other) {
     constexpr double clearly = 0.01;
     return plan.share_without > other.share_without + clearly;
 }

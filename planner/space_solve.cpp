@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 #include <utility>
-#include <variant>
+#include <vector>
 
 #include "downwash/planner/any_order.hpp"
 #include "downwash/planner/family_parts.hpp"
@@ -21,21 +21,17 @@ bool certifies(const SpaceProblem& problem) {
     return problem.uncertainty && problem.planner.certify;
 }
 
-/// Whether flights of a search, or of its certificates, are among surfaces.
-bool needs_volumes(const SpaceProblem& problem) {
-    return problem.aero.enabled && (problem.planner.variant == Variant::mp_arm_ada || certifies(problem));
+/// Whether flights of a search, of its certificates or of stops are among surfaces.
+bool needs_volumes(const SpaceProblem& problem, const SpaceSolveOptions& options) {
+    return problem.aero.enabled &&
+           (problem.planner.variant == Variant::mp_arm_ada || certifies(problem) || options.finds_stops);
 }
 
-/// Where hubs can be while the multirotor is within the bounds.
-std::shared_ptr<const SurfaceVolumes> volumes_for(const SpaceProblemModel& model, const SpaceSolveOptions& options) {
+}  // namespace
+
+std::shared_ptr<const SurfaceVolumes> make_volumes(const SpaceProblemModel& model, const std::filesystem::path& cache) {
     const SpaceProblem& problem = model.problem();
-    if (!needs_volumes(problem)) {
-        return nullptr;
-    }
-    if (options.map) {
-        return options.map;
-    }
-    double reach_m = 0;
+    double reach_m = 0;  // of hubs, from the multirotor's centre of mass
     for (const SpaceRotor& rotor : problem.robot.plant.rotors) {
         reach_m = std::max(reach_m, std::sqrt(dot(rotor.position_m, rotor.position_m)));
     }
@@ -45,11 +41,9 @@ std::shared_ptr<const SurfaceVolumes> volumes_for(const SpaceProblemModel& model
         model.shared_scene(), problem.aero, problem.robot, PlaneOfMotion{},
         Bounds{low_m[0] - reach_m, high_m[0] + reach_m, low_m[2] - reach_m, high_m[2] + reach_m}, low_m[1] - reach_m,
         high_m[1] + reach_m);
-    volumes->read(options.map_cache);
+    volumes->read(cache);
     return volumes;
 }
-
-}  // namespace
 
 std::vector<KeyError> space_planning_errors(const SpaceProblem& problem) {
     std::vector<KeyError> errors;
@@ -72,7 +66,10 @@ SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model, c
     options.threads = std::max(1, options.threads);
     SpaceSearchResult result;
     const planning::Stopwatch map_clock;
-    const std::shared_ptr<const SurfaceVolumes> volumes = volumes_for(*model, options);
+    std::shared_ptr<const SurfaceVolumes> volumes;
+    if (needs_volumes(problem, options)) {
+        volumes = options.map ? options.map : make_volumes(*model, options.map_cache);
+    }
     result.planning.map_wall_s = volumes ? map_clock.seconds() : 0;
     const double map_wall_s = result.planning.map_wall_s;
     const double setup_wall_s = since_call.seconds();
@@ -87,7 +84,7 @@ SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model, c
         result.planning.map_wall_s = map_wall_s;
         if (result.plan && !(result.execution && result.status == Status::solved)) {
             planning::DirectFlightOf<Space> flight =
-                planning::fly_directly(*model, planning::start_state(*model, problem.start), *result.plan,
+                planning::fly_directly(*model, start_state(*model, problem.start), *result.plan,
                                        goals_of(in_order(problem, result.order)), problem.energy_budget_j,
                                        planning::end_of_last_flight(options.stop));
             result.execution = std::move(flight.execution);
@@ -98,6 +95,7 @@ SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model, c
     if (volumes && !options.map) {
         volumes->keep(options.map_cache);
     }
+    result.map = volumes;
     result.interrupted = options.stop.stop_requested();
     return result;
 }

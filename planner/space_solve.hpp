@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <vector>
 
@@ -12,18 +13,25 @@
 
 namespace downwash {
 
-/// How a program takes part in a search in space. Safe stops are not looked for.
+/// How a program takes part in a search in space.
 using SpaceSolveOptions = SolveOptionsOf<planning::Space>;
 
 /// What a search in space has found, and how it went.
 struct SpaceSearchResult : FoundOf<planning::Space> {
     bool interrupted = false;  ///< ended by the stop token
     SearchRecord planning;
+    /// Volumes of the problem, for SpaceSolveOptions::map of another one with the same scene; empty: none.
+    std::shared_ptr<const SurfaceVolumes> map;
 };
 
 /// What of a sound problem in space cannot be planned yet: narrow passages, rules of yaw by OMPL's planners. Keys are
 /// key paths of a problem file. Empty if it can be planned.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> space_planning_errors(const SpaceProblem& problem);
+
+/// The volumes of surface effects wherever the vehicle of a problem can be. They fill themselves as flights ask.
+/// @param cache folder of a MapCache; empty: none
+[[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const SurfaceVolumes> make_volumes(
+    const SpaceProblemModel& model, const std::filesystem::path& cache = {});
 
 /// Plans, and flies the plan with direct aerodynamics, hold included; see solve() of the plane. The same search finds
 /// plans of both families.

@@ -6,6 +6,7 @@
 
 #include "downwash/base/infinity.hpp"
 #include "downwash/base/parallel.hpp"
+#include "downwash/planner/braking_parts.hpp"
 #include "downwash/planner/certificate_record.hpp"
 #include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/search_quantiles.hpp"
@@ -22,30 +23,6 @@ std::vector<double> quantiles_of_world(const SpaceRobot& robot, std::uint64_t nu
         dangers.push_back(parameter->danger);
     }
     return search_quantiles(dangers, dangers.size(), number);
-}
-
-std::vector<SpaceWorld> search_worlds(const SpaceProblem& problem) {
-    std::vector<SpaceWorld> worlds;
-    for (std::uint64_t i = 1; i < problem.planner.worlds; ++i) {
-        const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem.planner.seed} ^ simulation::mixed(i));
-        worlds.push_back(
-            space_world_at(*problem.uncertainty, problem.robot, quantiles_of_world(problem.robot, i), tape));
-    }
-    return worlds;
-}
-
-/// From now on a vehicle was always as it is, and has spent no energy. The gusts of its world blow already.
-void forget(AnySpaceState& vehicle, const SpaceWorld& world) {
-    vehicle.plant.energy_j = 0;
-    vehicle.world = {};
-    for (auto& past : vehicle.world.past) {
-        std::ranges::copy(vehicle.plant.q, past.q);
-        std::ranges::copy(vehicle.plant.u, past.u);
-    }
-    if (world.position_noise_m > 0 || world.velocity_noise_m_s > 0 || world.gyro_noise_rad_s > 0 ||
-        world.gust_m_s > 0) {
-        simulation::start_gusts(world.tape, vehicle.world.gust);
-    }
 }
 
 /// The legs of a plan from one of its knots to another.
@@ -114,13 +91,23 @@ class Asking {
 
 }  // namespace
 
+std::vector<SpaceWorld> search_worlds(const SpaceProblem& problem) {
+    std::vector<SpaceWorld> worlds;
+    for (std::uint64_t i = 1; i < problem.planner.worlds; ++i) {
+        const std::uint64_t tape = simulation::mixed(~std::uint64_t{problem.planner.seed} ^ simulation::mixed(i));
+        worlds.push_back(
+            space_world_at(*problem.uncertainty, problem.robot, quantiles_of_world(problem.robot, i), tape));
+    }
+    return worlds;
+}
+
 SpaceProblemWorlds::SpaceProblemWorlds(const SpaceProblem& problem, const PlannerModelOf<Space>& model, int threads)
     : problem_(problem),
       model_(model),
       threads_(threads),
       among_surfaces_(problem.goals.size()),
       own_(problem.goals.size()),
-      search_worlds_(search_worlds(problem)),
+      search_worlds_(problem.uncertainty ? search_worlds(problem) : std::vector<SpaceWorld>()),
       searching_(problem.goals.size()),
       screened_(problem.goals.size() + 1) {
     for (const SpaceGoal& goal : problem.goals) {
@@ -165,7 +152,7 @@ SpaceProblemWorlds::Vehicles SpaceProblemWorlds::starts_in(std::span<const Space
     Vehicles vehicles;
     if (!is_at_rest(problem_.start)) {
         for (const SpaceWorld& world : worlds) {
-            vehicles.emplace_back(flights.state_at(motion, &world));
+            vehicles.emplace_back(flights.state_at(motion, &world, problem_.start.carry));
         }
         return vehicles;
     }
@@ -178,8 +165,8 @@ SpaceProblemWorlds::Vehicles SpaceProblemWorlds::starts_in(std::span<const Space
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         std::optional<AnySpaceState>& vehicle = vehicles.emplace_back();
         if (jobs[i].rejection() == Rejection::none) {
-            vehicle = jobs[i].end();
-            forget(*vehicle, worlds[i]);
+            vehicle = begun_in(jobs[i].end(), &worlds[i]);
+            vehicle->plant.energy_j = 0;
         }
     }
     return vehicles;
@@ -259,6 +246,24 @@ void SpaceProblemWorlds::advance(Vehicles& vehicles, const CourseOf<Space>& befo
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         vehicles[world_of[i]] = jobs[i].start;
     }
+}
+
+void SpaceProblemWorlds::advance(std::vector<SpaceFlightJob>& jobs, const SpacePlan& plan) {
+    if (plan.reference.size() < 2) {
+        return;
+    }
+    for (SpaceFlightJob& job : jobs) {
+        job.legs = legs_of(plan, 0, plan.reference.size() - 1);
+    }
+    pool(0, true).fly(jobs);
+}
+
+bool SpaceProblemWorlds::survives(const SpacePlan& plan, std::span<const SpaceWorld> worlds,
+                                  const StopCondition& is_over) {
+    const Asking scope(is_over_, is_over);
+    Vehicles vehicles = starts_in(worlds, true);
+    return std::ranges::all_of(fly_on(vehicles, plan, 0, goals(), 1, worlds, is_over),
+                               [](const WorldSample& each) { return each.outcome == Outcome::ok; });
 }
 
 std::vector<CounterexampleOf<Space>> SpaceProblemWorlds::counterexamples(const Certificate& certificate,

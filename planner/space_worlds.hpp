@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "downwash/base/export.hpp"
 #include "downwash/base/stop_condition.hpp"
 #include "downwash/planner/certificate.hpp"
 #include "downwash/planner/course.hpp"
@@ -17,14 +18,26 @@
 
 namespace downwash::planning {
 
+/// The worlds that every edge of a search has to survive beside the nominal one. @pre the problem has an uncertainty
+[[nodiscard]] DOWNWASH_EXPORT std::vector<SpaceWorld> search_worlds(const SpaceProblem& problem);
+
 /// The worlds of a search in space and the certificates of its plans; ProblemWorlds has those of the plane.
 class SpaceProblemWorlds {
  public:
     /// Vehicles of a search are flown in the planner's own model, those of certificates with all surfaces.
-    /// @pre problem outlives it, and has an uncertainty
+    /// @pre problem outlives it
     SpaceProblemWorlds(const SpaceProblem& problem, const PlannerModelOf<Space>& model, int threads);
 
-    /// See ProblemWorlds.
+    using Vehicles = std::vector<std::optional<AnySpaceState>>;
+    /// See WorldFlights: among all surfaces.
+    [[nodiscard]] Vehicles starts_in(std::span<const SpaceWorld> worlds) { return starts_in(worlds, true); }
+    /// Moves vehicles along a whole plan, a leg for each piece of it; none is judged.
+    void advance(std::vector<SpaceFlightJob>& jobs, const SpacePlan& plan);
+    /// Whether a plan flies through all goals in each of the worlds, among all surfaces. @throws WorkStopped
+    [[nodiscard]] bool survives(const SpacePlan& plan, std::span<const SpaceWorld> worlds,
+                                const StopCondition& is_over);
+
+    /// See ProblemWorlds. @pre the problem has an uncertainty
     [[nodiscard]] SearchWorldsOf<Space> for_search(const CourseOf<Space>& before);
     [[nodiscard]] std::vector<CounterexampleOf<Space>> counterexamples(const Certificate& certificate,
                                                                        const CourseOf<Space>& before);
@@ -40,8 +53,6 @@ class SpaceProblemWorlds {
     };
 
  private:
-    using Vehicles = VehiclesOf<Space>;
-
     /// A pool of flights to a goal, among surfaces or, if the planner's own model knows of none, without.
     [[nodiscard]] SpacePool& pool(std::size_t goal, bool among_surfaces);
     [[nodiscard]] SpaceWorld world(std::uint64_t index) const;

@@ -7,6 +7,8 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/controllers/space_segment.hpp"
+#include "downwash/dynamics/plant_model.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/execution.hpp"
 
@@ -39,23 +41,70 @@ bool is_same_goal(const Goal& a, const Goal& b, const PlantModel& plant) {
            one.angle_rad == other.angle_rad && is_as_far({0, 0, 0, 0}) && is_as_far({10, 7, 0, 1});
 }
 
+[[noreturn]] void throw_failed_before() {
+    throw_input_error(
+        "fails before the moment from which to plan again: expected a plan that flies so far; `downwash execute` shows "
+        "how its flight ends",
+        "plan");
+}
+
+/// Only the rate of the controller that flies makes the same ticks.
+void require_same_rate(double rate_hz, double tick_s) {
+    const double flown_hz = 1 / tick_s;
+    if (std::abs(rate_hz - flown_hz) > 1e-6 * flown_hz) {
+        throw_input_error(
+            "is " + to_text(rate_hz) + ": expected " + to_text(flown_hz, 6) + ", that of the robot that flies",
+            "robot.controller.rate_hz");
+    }
+}
+
+void spend(std::optional<double>& budget_j, double energy_j) {
+    if (!budget_j) {
+        return;
+    }
+    *budget_j -= energy_j;
+    if (!(*budget_j > 0)) {
+        throw_input_error(
+            "is spent before this moment: the plan has taken " + to_text(energy_j, 6) + " J by then: expected more",
+            "goal.energy_budget_j");
+    }
+}
+
+/// The goal that is left where no target is.
+template <class AnyGoal>
+AnyGoal what_targets_leave(const std::optional<AnyGoal>& return_to) {
+    if (!return_to) {
+        throw_input_error("has no target that was not visited before: nothing is left to plan", "goal");
+    }
+    return *return_to;
+}
+
+template <class AnyPlan>
+double same_reference(const AnyPlan& plan, const AnyPlan& other) {
+    if (plan.reference.empty() || other.reference.empty()) {
+        return 0;
+    }
+    const std::int64_t end = std::max(plan.reference.back().tick, other.reference.back().tick);
+    std::int64_t tick = 0;
+    while (tick <= end && plan.at(tick) == other.at(tick)) {
+        ++tick;
+    }
+    return static_cast<double>(std::max<std::int64_t>(0, tick - 1)) * plan.tick_s;
+}
+
 }  // namespace
 
 Takeover take_over(const Problem& flown, const Plan& plan, const std::optional<VisitOrder>& order, std::int64_t tick) {
     const auto model = make_flight_model(flown);
     Takeover from;
     from.tick = tick;
-    from.plant = model->tick().plant;
     from.start = flown.start;
     from.rest = plan.rest_after(tick);
     if (tick > 0) {
         const FlightPart part = execute_part(*model, start_state(*model, flown.start), plan.beginning(tick).segments(),
                                              flown.aero.enabled, {});
         if (part.rejection != Rejection::none) {
-            throw_input_error(
-                "fails before the moment from which to plan again: expected a plan that flies so far; "
-                "`downwash execute` shows how its flight ends",
-                "plan");
+            throw_failed_before();
         }
         from.start = start_of(*model, part.end, plan.at(tick));
         from.energy_j = part.end.plant.energy_j;
@@ -73,24 +122,13 @@ Takeover take_over(const Problem& flown, const Plan& plan, const std::optional<V
 }
 
 Problem remaining(const Takeover& from, Problem changed) {
-    if (const double rate_hz = 1 / from.rest.tick_s;
-        std::abs(changed.robot.controller.rate_hz - rate_hz) > 1e-6 * rate_hz) {
-        throw_input_error("is " + to_text(changed.robot.controller.rate_hz) + ": expected " + to_text(rate_hz, 6) +
-                              ", that of the robot that flies",
-                          "robot.controller.rate_hz");
-    }
+    require_same_rate(changed.robot.controller.rate_hz, from.rest.tick_s);
     changed.start = from.start;
     const bool had_targets = !changed.targets.empty();
-    if (changed.energy_budget_j) {
-        *changed.energy_budget_j -= from.energy_j;
-        if (!(*changed.energy_budget_j > 0)) {
-            throw_input_error("is spent before this moment: the plan has taken " + to_text(from.energy_j, 6) +
-                                  " J by then: expected more",
-                              "goal.energy_budget_j");
-        }
-    }
+    spend(changed.energy_budget_j, from.energy_j);
+    const PlantModel plant = make_plant_model(changed.robot.multirotor, changed.robot.arm, changed.robot.rotors);
     for (const Goal& visited : from.visited) {
-        const auto is_it = [&](const Goal& goal) { return is_same_goal(goal, visited, from.plant); };
+        const auto is_it = [&](const Goal& goal) { return is_same_goal(goal, visited, plant); };
         if (const auto target = std::ranges::find_if(changed.targets, is_it); target != changed.targets.end()) {
             changed.targets.erase(target);
         } else if (!changed.goals_before.empty() && is_it(changed.goals_before.front())) {
@@ -98,10 +136,63 @@ Problem remaining(const Takeover& from, Problem changed) {
         }
     }
     if (had_targets && changed.targets.empty()) {
-        if (!changed.return_to) {
-            throw_input_error("has no target that was not visited before: nothing is left to plan", "goal");
+        changed.goal = what_targets_leave(changed.return_to);
+        changed.return_to.reset();
+        changed.energy_budget_j.reset();  // of targets only
+    }
+    return changed;
+}
+
+TakeoverOf<planning::Space> take_over(const SpaceProblem& flown, const SpacePlan& plan,
+                                      const std::optional<VisitOrder>& order, std::int64_t tick) {
+    const SpaceProblemModel model(in_order(flown, order));
+    TakeoverOf<planning::Space> from;
+    from.tick = tick;
+    from.start = flown.start;
+    from.rest = plan.rest_after(tick);
+    if (tick > 0) {
+        const SpaceFlight flight = model.execute_part(plan.beginning(tick));
+        if (flight.rejection != Rejection::none) {
+            throw_failed_before();
         }
-        changed.goal = *changed.return_to;
+        from.start = start_of(model, flight.end, plan.at(tick));
+        from.energy_j = flight.energy_j;
+    }
+    const std::vector<SpaceGoal> goals = goals_of(model.problem());
+    std::vector<bool> is_visited(goals.size());
+    for (const SpaceGoalHover& hover : model.goals().hovers(plan)) {
+        if (hover.end_tick > tick || from.visited.size() + 1 == goals.size()) {
+            continue;
+        }
+        const std::size_t next = from.visited.size();
+        const bool is_target = order && !targets_of(flown).empty() && next < order->visits.size();
+        is_visited[hover.goal] = true;
+        from.visited.push_back(is_target ? flown.goals[order->visits[next].target] : goals[hover.goal]);
+    }
+    for (std::size_t goal = 0; goal < goals.size(); ++goal) {
+        if (!is_visited[goal]) {
+            from.left.push_back(goals[goal]);
+        }
+    }
+    return from;
+}
+
+SpaceProblem remaining(const TakeoverOf<planning::Space>& from, SpaceProblem changed) {
+    require_same_rate(changed.robot.controller.rate_hz, from.rest.tick_s);
+    changed.start = from.start;
+    spend(changed.energy_budget_j, from.energy_j);
+    const bool are_targets = changed.in_any_order;
+    for (const SpaceGoal& visited : from.visited) {
+        std::vector<SpaceGoal>& goals = changed.goals;
+        const auto end = are_targets || goals.empty() ? goals.end() : goals.begin() + 1;
+        const auto goal = std::find(goals.begin(), end, visited);
+        if (goal != end && (are_targets || goals.size() > 1)) {
+            goals.erase(goal);
+        }
+    }
+    if (are_targets && changed.goals.empty()) {
+        changed.goals = {what_targets_leave(changed.return_to)};
+        changed.in_any_order = false;
         changed.return_to.reset();
         changed.energy_budget_j.reset();  // of targets only
     }
@@ -109,15 +200,10 @@ Problem remaining(const Takeover& from, Problem changed) {
 }
 
 double same_reference_s(const Plan& plan, const Plan& other) {
-    if (plan.reference.empty() || other.reference.empty()) {
-        return 0;
-    }
-    const std::int64_t end = std::max(plan.reference.back().tick, other.reference.back().tick);
-    std::int64_t tick = 0;
-    while (tick <= end && plan.at(tick) == other.at(tick)) {
-        ++tick;
-    }
-    return static_cast<double>(std::max<std::int64_t>(0, tick - 1)) * plan.tick_s;
+    return same_reference(plan, other);
+}
+double same_reference_s(const SpacePlan& plan, const SpacePlan& other) {
+    return same_reference(plan, other);
 }
 
 }  // namespace downwash

@@ -16,6 +16,7 @@
 #include "downwash/problems/problem.hpp"
 #include "downwash/scene/shapes.hpp"
 #include "downwash/simulation/space_goal.hpp"
+#include "downwash/simulation/space_loop.hpp"
 #include "downwash/simulation/space_robot.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 
@@ -32,6 +33,14 @@ struct SpaceStart {
     std::optional<std::array<double, 4>> attitude;
     Vector3 body_rates_rad_s = {};          ///< in the body frame
     std::vector<double> joint_rates_rad_s;  ///< one for each joint; empty: all zero
+
+    /// A reference: one number for each axis, x, y, z [m], yaw and joints [rad], and their derivatives.
+    struct Reference {
+        std::vector<double> position, velocity, acceleration;
+    };
+    /// With which the plan begins; empty: where the vehicle is, as it moves.
+    std::optional<Reference> reference;
+    SpaceCarry carry;  ///< of a vehicle in flight; empty: as after a long hover
 };
 
 /// Each once, in their order.
@@ -71,6 +80,10 @@ struct SpaceProblem {
 [[nodiscard]] inline bool leaves_order_open(const SpaceProblem& problem) noexcept {
     return problem.in_any_order && !problem.return_to;
 }
+
+/// Why a start is not one of a robot: lists with too few or too many numbers, or numbers that are not finite. Keys are
+/// key paths of a problem file. Empty when it is.
+[[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> start_errors(const SpaceStart& start, const SpaceRobot& robot);
 
 /// Every reason why a problem in space cannot be flown: numbers out of range, a robot that cannot fly, a start outside
 /// the flyable area, a goal that says nothing. Keys are key paths of a problem file. Empty when it is sound.

@@ -112,12 +112,13 @@ std::vector<double> start_joints_rad(const SpaceProblem& p) {
 
 Errors misfit_start(const SpaceProblem& p) {
     constexpr double rounding_rad = 1e-9;
-    Errors errors = wrong_joint_count(p.robot, p.start.joints_rad.size(), "start.joints_deg");
-    if (errors.empty()) {
+    constexpr double swing_rad = 0.05;  // of a joint in motion about a limit to which its reference leads
+    Errors errors = start_errors(p.start, p.robot);
+    if (wrong_joint_count(p.robot, p.start.joints_rad.size(), "").empty()) {
         const std::string key = p.start.joints_rad.empty() ? "start" : "start.joints_deg";
-        append(errors, joints_beyond_limits(p.robot, start_joints_rad(p), rounding_rad, key));
+        append(errors,
+               joints_beyond_limits(p.robot, start_joints_rad(p), p.start.reference ? swing_rad : rounding_rad, key));
     }
-    append(errors, wrong_joint_count(p.robot, p.start.joint_rates_rad_s.size(), "start.joint_rates_rad_s"));
     if (p.start.attitude) {
         double square = 0;
         for (const double part : *p.start.attitude) {
@@ -132,9 +133,12 @@ Errors misfit_start(const SpaceProblem& p) {
     return errors;
 }
 
-/// Of a vehicle that begins to follow a reference, which has limits.
+/// Of a vehicle that begins to follow a reference, which has limits. One in flight is as fast as it is.
 Errors start_too_fast(const SpaceProblem& p) {
     Errors errors;
+    if (p.start.reference) {
+        return errors;
+    }
     const double speed = length_of(p.start.velocity_m_s);
     if (speed > p.motion.max_speed_m_s) {
         errors.push_back({"start.velocity_m_s", "makes a start speed of " + rounded(speed) +
@@ -416,6 +420,37 @@ std::vector<SpaceGoal> goals_of(const SpaceProblem& problem) {
         goals.push_back(*problem.return_to);
     }
     return goals;
+}
+
+Errors start_errors(const SpaceStart& start, const SpaceRobot& robot) {
+    Errors errors = wrong_joint_count(robot, start.joints_rad.size(), "start.joints_deg");
+    append(errors, wrong_joint_count(robot, start.joint_rates_rad_s.size(), "start.joint_rates_rad_s"));
+    const auto check = [&errors](const char* key, const std::vector<double>& given, std::size_t expected,
+                                 const char* of_what) {
+        if (given.size() != expected) {
+            errors.push_back({key, "has " + std::to_string(given.size()) + " numbers: expected " +
+                                       std::to_string(expected) + ", " + of_what});
+        }
+        if (!std::ranges::all_of(given, [](double number) { return std::isfinite(number); })) {
+            errors.push_back({key, "has a number that is not finite: expected finite ones"});
+        }
+    };
+    if (const std::vector<double>& given = start.carry.rotor_thrust_n; !given.empty()) {
+        check("start.rotor_thrust_n", given, robot.plant.rotors.size(), "one for each rotor");
+    }
+    if (const std::vector<double>& given = start.carry.controller_memory; !given.empty()) {
+        check("start.controller_memory", given,
+              static_cast<std::size_t>(memory_size(robot.controller.law, robot.joints())),
+              "as many as robot.controller remembers");
+    }
+    if (const auto& reference = start.reference) {
+        const auto axes = static_cast<std::size_t>(space::first_joint + robot.joints());
+        constexpr const char* for_each = "one for each of x, y, z, yaw and the joints";
+        check("start.reference.position", reference->position, axes, for_each);
+        check("start.reference.velocity", reference->velocity, axes, for_each);
+        check("start.reference.acceleration", reference->acceleration, axes, for_each);
+    }
+    return errors;
 }
 
 Errors space_problem_errors(const SpaceProblem& problem) {

@@ -5,6 +5,8 @@
 
 #include "downwash/base/lane_math.hpp"
 #include "downwash/simulation/space_effect.hpp"
+#include "downwash/simulation/space_place.hpp"
+#include "downwash/simulation/space_pool.hpp"
 
 namespace downwash {
 namespace {
@@ -33,9 +35,60 @@ SpaceMotion start_motion(const SpaceStart& start) noexcept {
 
 bool is_at_rest(const SpaceStart& start) noexcept {
     const bool is_level = !start.attitude || ((*start.attitude)[1] == 0 && (*start.attitude)[2] == 0);
-    return is_level && start.velocity_m_s == Vector3{} && start.body_rates_rad_s == Vector3{} &&
+    const bool is_in_flight =
+        start.reference || !start.carry.rotor_thrust_n.empty() || !start.carry.controller_memory.empty();
+    return is_level && !is_in_flight && start.velocity_m_s == Vector3{} && start.body_rates_rad_s == Vector3{} &&
            is_zero(start.joint_rates_rad_s);
 }
+
+SpacePoint reference_at(const SpaceStart& start) noexcept {
+    SpacePoint point;
+    if (start.reference) {
+        std::ranges::copy(start.reference->position, point.position);
+        std::ranges::copy(start.reference->velocity, point.velocity);
+        std::ranges::copy(start.reference->acceleration, point.acceleration);
+        return point;
+    }
+    const SpaceMotion motion = start_motion(start);
+    point = at_rest(configuration_of(motion));
+    if (!start.attitude) {
+        point.position[space::yaw] = start.yaw_rad;
+    }
+    std::ranges::copy(motion.velocity_m_s, point.velocity);
+    std::ranges::copy(motion.joint_rates_rad_s, point.velocity + space::first_joint);
+    return point;
+}
+
+AnySpaceState start_state(const SpaceProblemModel& model, const SpaceStart& start) {
+    return SpacePool(SpacePoolSetup{model.problem().robot}).state_at(start_motion(start), nullptr, start.carry);
+}
+
+SpaceStart start_of(const SpaceProblemModel& model, const AnySpaceState& state, const SpacePoint& reference) {
+    const SpaceRobot& robot = model.problem().robot;
+    const SpaceMotion motion = motion_of(state);
+    const auto first = [](const auto& numbers, int count) {
+        return std::vector<double>(std::begin(numbers), std::begin(numbers) + count);
+    };
+    const int joints = robot.joints(), axes = space::first_joint + joints;
+    SpaceStart start;
+    start.position_m = motion.position_m;
+    start.yaw_rad = yaw_of(motion.attitude);
+    start.joints_rad = first(motion.joints_rad, joints);
+    start.velocity_m_s = motion.velocity_m_s;
+    start.attitude = motion.attitude;
+    start.body_rates_rad_s = motion.body_rates_rad_s;
+    start.joint_rates_rad_s = first(motion.joint_rates_rad_s, joints);
+    start.reference.emplace(first(reference.position, axes), first(reference.velocity, axes),
+                            first(reference.acceleration, axes));
+    start.carry = carry_of(robot, state);
+    return start;
+}
+
+SpaceProblemModel::SpaceProblemModel(SpaceProblem problem, const SpaceProblemModel& other)
+    : problem_(std::move(problem)),
+      scene_(other.scene_),
+      checker_(other.checker_),
+      goals_(problem_.robot, scene_, goals_of(problem_), leaves_order_open(problem_)) {}
 
 SpaceProblemModel::SpaceProblemModel(SpaceProblem problem)
     : problem_(std::move(problem)),
@@ -44,6 +97,15 @@ SpaceProblemModel::SpaceProblemModel(SpaceProblem problem)
       goals_(problem_.robot, scene_, goals_of(problem_), leaves_order_open(problem_)) {}
 
 SpaceFlight SpaceProblemModel::execute(const SpacePlan& plan, const SpaceExecutionSettings& settings) const {
+    return fly(plan, settings, settings.goals != nullptr ? settings.goals : &goals_);
+}
+
+SpaceFlight SpaceProblemModel::execute_part(const SpacePlan& plan) const {
+    return fly(plan, {}, nullptr);
+}
+
+SpaceFlight SpaceProblemModel::fly(const SpacePlan& plan, const SpaceExecutionSettings& settings,
+                                   const SpaceGoalRule* goals) const {
     const SpaceRobot& robot = problem_.robot;
     std::optional<simulation::DirectSpaceEffect> effect;
     SpaceFlightSettings flight;
@@ -54,10 +116,12 @@ SpaceFlight SpaceProblemModel::execute(const SpacePlan& plan, const SpaceExecuti
     flight.checker = &checker_;
     flight.world = settings.world.value_or(SpaceWorld{});
     flight.settles = settings.world.has_value() && !settings.start && is_at_rest(problem_.start);
-    flight.goals = settings.goals != nullptr ? settings.goals : &goals_;
+    flight.goals = goals;
     flight.is_over = settings.is_over;
     flight.energy_budget_j = problem_.energy_budget_j;
-    return fly(robot, plan, settings.start.value_or(start_motion(problem_.start)), flight);
+    flight.carry = settings.start ? carry_of(robot, *settings.start) : problem_.start.carry;
+    return downwash::fly(robot, plan, settings.start ? motion_of(*settings.start) : start_motion(problem_.start),
+                         flight);
 }
 
 }  // namespace downwash

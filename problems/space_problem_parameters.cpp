@@ -86,6 +86,44 @@ Row attitude() {
     return std::move(row).between(-1e3, 1e3);
 }
 
+/// The reference at the start; the default where there is none.
+const SpaceStart::Reference& reference_in(const SpaceProblem& p) {
+    static const SpaceStart::Reference still;
+    return p.start.reference ? *p.start.reference : still;
+}
+SpaceStart::Reference& reference_in(SpaceProblem& p) {
+    return p.start.reference ? *p.start.reference : p.start.reference.emplace();
+}
+
+/// What a vehicle in flight has besides its motion.
+void add_flight(Rows& rows) {
+    const auto numbers = [&](std::string_view path, std::string_view description,
+                             std::vector<double> SpaceCarry::*member) {
+        rows.push_back(number_list<SpaceProblem>(
+            path, description, [member](auto& p) -> auto& { return p.start.carry.*member; }));
+    };
+    numbers("start.rotor_thrust_n", "of a vehicle in flight: free-air thrust of each rotor; none: those of a hover",
+            &SpaceCarry::rotor_thrust_n);
+    numbers("start.controller_memory",
+            "of a vehicle in flight: what its controller remembers; none: as after a long hover",
+            &SpaceCarry::controller_memory);
+    rows.push_back(parameters::optional_group<SpaceProblem>(
+        "start.reference",
+        "that a vehicle in flight follows: a number for x, y, z [m], yaw and each joint [rad]; else where it is, as it "
+        "moves",
+        in(&SpaceProblem::start, &SpaceStart::reference)));
+    const auto along = [&](std::string_view path, std::string_view description, double most,
+                           std::vector<double> SpaceStart::Reference::*member) {
+        rows.push_back(number_list<SpaceProblem>(
+                           path, description, [member](auto& p) -> auto& { return reference_in(p).*member; })
+                           .between(-most, most));
+    };
+    along("start.reference.position", "along each axis", farthest_m, &SpaceStart::Reference::position);
+    along("start.reference.velocity", "its rate along each axis, per s", 100, &SpaceStart::Reference::velocity);
+    along("start.reference.acceleration", "its acceleration along each axis, per s2", 1e4,
+          &SpaceStart::Reference::acceleration);
+}
+
 void add_start(Rows& rows) {
     const auto of = [](auto member) { return in(&SpaceProblem::start, member); };
     rows.push_back(group("start", "where the flight begins").is_required());
@@ -110,6 +148,7 @@ void add_start(Rows& rows) {
                   number_list<SpaceProblem>("start.joint_rates_rad_s", "one rate for each joint; left out: all zero",
                                             of(&SpaceStart::joint_rates_rad_s))
                       .between(-100, 100)});
+    add_flight(rows);
 }
 
 /// Far below what moves a vehicle; with less, a motion has more control ticks than can be counted.

@@ -111,6 +111,15 @@ Configuration read_configuration(JsonReader& reader, const Node& group, std::spa
     return at;
 }
 
+SpaceConfiguration read_space_configuration(JsonReader& reader, const Node& group, int joints) {
+    const std::span<const Axis> axes = axes_in_space(joints);
+    SpaceConfiguration at;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        at[i] = reader.required_number(group, axes[i].position);
+    }
+    return at;
+}
+
 namespace {
 
 std::vector<Configuration> read_waypoints(JsonReader& reader, const Node& list, std::span<const Axis> axes) {

@@ -2,12 +2,15 @@
 
 // Private to results/.
 
+#include <cmath>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "downwash/controllers/plan.hpp"
+#include "downwash/controllers/space_configuration.hpp"
 #include "downwash/controllers/space_reference.hpp"
+#include "downwash/planner/safe_stops.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/problems/space_problem.hpp"
 #include "downwash/results/json_reader.hpp"
@@ -30,6 +33,31 @@ struct SpacePlanText {
 
 /// Reads a coordinate for each axis; errors go to the reader.
 [[nodiscard]] Configuration read_configuration(JsonReader& reader, const Node& group, std::span<const Axis> axes);
+
+/// The same in space.
+[[nodiscard]] SpaceConfiguration read_space_configuration(JsonReader& reader, const Node& group, int joints);
+
+/// Reads `stops`. @param read_rest reads where one ends
+template <class Family, class ReadRest>
+void read_stops(JsonReader& reader, const Node& root, double tick_s, std::optional<SafeStopsOf<Family>>& into,
+                const ReadRest& read_rest) {
+    const auto node = reader.optional_group(root, "stops");
+    if (!node) {
+        return;
+    }
+    SafeStopsOf<Family>& stops = into.emplace();
+    stops.share_without = reader.amount(*node, "share_without", 0);
+    for (const Node& each : reader.groups(JsonReader::member(*node, "moments"))) {
+        auto& moment = stops.moments.emplace_back();
+        moment.tick = std::llround(reader.amount(each, "t_s", 0) / tick_s);
+        bool is_safe = false;
+        reader.read_flag(each, "safe", is_safe);
+        if (const auto rest = JsonReader::member(each, "rest"); is_safe && rest) {
+            moment.rest = read_rest(*rest);
+            moment.duration_s = reader.amount(each, "duration_s", 0);
+        }
+    }
+}
 
 /// Reads `plan`; errors go to the reader. @param problem on whose control ticks knots have to stand
 [[nodiscard]] PlanText read_plan(JsonReader& reader, const Node& root, const Problem& problem);

@@ -6,9 +6,11 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "downwash/controllers/axes.hpp"
 #include "downwash/planner/found.hpp"
+#include "downwash/planner/solution.hpp"
 #include "downwash/results/json_parts.hpp"
 
 // What solution.json says of a search, in the plane and in space.
@@ -87,6 +89,31 @@ inline Json order_json(const VisitOrder& order) {
             {"is_best", order.is_best},
             {"legs", order.legs},
             {"cost_of_legs", json_number(order.cost_of_legs)}};
+}
+
+template <class Family>
+Json stops_json(const std::optional<SafeStopsOf<Family>>& stops, double tick_s, std::span<const Axis> axes) {
+    if (!stops) {
+        return {};
+    }
+    Json moments = Json::array();
+    for (const auto& moment : stops->moments) {
+        Json each = {{"t_s", static_cast<double>(moment.tick) * tick_s}, {"safe", moment.rest.has_value()}};
+        if (moment.rest) {
+            each["rest"] = configuration_json(*moment.rest, axes);
+            each["duration_s"] = moment.duration_s;
+        }
+        moments.push_back(std::move(each));
+    }
+    return {{"share_without", stops->share_without}, {"moments", std::move(moments)}};
+}
+
+inline Json replanned_json(const Replanned& from) {
+    return {{"plan", from.plan},
+            {"t_s", from.t_s},
+            {"tick", from.tick},
+            {"rest", {{"outcome", name_of(from.rest_outcome)}, {"cost", json_number(from.rest_cost)}}},
+            {"same_reference_s", from.same_reference_s ? json_number(*from.same_reference_s) : Json()}};
 }
 
 template <class Family>

@@ -173,25 +173,6 @@ void read_head(JsonReader& reader, const Node& root, Solution& solution) {
     solution.cost = reader.amount(root, "cost", 0);
 }
 
-void read_stops(JsonReader& reader, const Node& root, const Plan& plan, std::optional<SafeStops>& into) {
-    const auto node = reader.optional_group(root, "stops");
-    if (!node) {
-        return;
-    }
-    SafeStops& stops = into.emplace();
-    stops.share_without = reader.amount(*node, "share_without", 0);
-    for (const Node& each : reader.groups(JsonReader::member(*node, "moments"))) {
-        SafeStops::Moment& moment = stops.moments.emplace_back();
-        moment.tick = std::llround(reader.amount(each, "t_s", 0) / plan.tick_s);
-        bool is_safe = false;
-        reader.read_flag(each, "safe", is_safe);
-        if (const auto rest = JsonReader::member(each, "rest"); is_safe && rest) {
-            moment.rest = problems::read_configuration(reader, *rest, plan.axes);
-            moment.duration_s = reader.amount(each, "duration_s", 0);
-        }
-    }
-}
-
 /// A solution with nothing in it but what the problem asks for.
 Solution blank_solution(const Problem& problem) {
     Solution solution;
@@ -212,7 +193,9 @@ Solution read_solution(const std::string& path, const Problem& problem) {
         read_planning(reader, root, solution);
         read_certificate(reader, root, solution.certificate);
         read_plan(reader, root, problem, solution);
-        read_stops(reader, root, *solution.plan, solution.safe_stops);
+        const Plan& plan = *solution.plan;
+        problems::read_stops(reader, root, plan.tick_s, solution.safe_stops,
+                             [&](const Node& rest) { return problems::read_configuration(reader, rest, plan.axes); });
         solution.order = problems::read_order(reader, root, problem);
     });
     return solution;

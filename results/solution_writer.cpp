@@ -36,22 +36,6 @@ Json plan_json(const std::optional<Plan>& plan) {
     return {{"waypoints", std::move(waypoints)}, {"reference", std::move(reference)}};
 }
 
-Json stops_json(const std::optional<SafeStops>& stops, double tick_s, std::span<const Axis> axes) {
-    if (!stops) {
-        return {};
-    }
-    Json moments = Json::array();
-    for (const SafeStops::Moment& moment : stops->moments) {
-        Json each = {{"t_s", static_cast<double>(moment.tick) * tick_s}, {"safe", moment.rest.has_value()}};
-        if (moment.rest) {
-            each["rest"] = configuration_json(*moment.rest, axes);
-            each["duration_s"] = moment.duration_s;
-        }
-        moments.push_back(std::move(each));
-    }
-    return {{"share_without", stops->share_without}, {"moments", std::move(moments)}};
-}
-
 Json execution_json(const Solution& solution) {
     if (!solution.execution) {
         return {};
@@ -109,13 +93,7 @@ std::string solution_json(const Solution& solution, const ProblemReference& prob
         {"files", files},
     };
     if (solution.replanned) {
-        const Replanned& from = *solution.replanned;
-        document["replanned"] = {
-            {"plan", from.plan},
-            {"t_s", from.t_s},
-            {"tick", from.tick},
-            {"rest", {{"outcome", name_of(from.rest_outcome)}, {"cost", json_number(from.rest_cost)}}},
-            {"same_reference_s", from.same_reference_s ? json_number(*from.same_reference_s) : Json()}};
+        document["replanned"] = replanned_json(*solution.replanned);
     }
     if (solution.order) {
         document["order"] = order_json(*solution.order);

@@ -37,6 +37,8 @@ struct SpaceSolution {
     bool aero = true;                               ///< whether surfaces acted on the rotors in that flight
     std::optional<VisitOrder> order;                ///< of the targets of a problem; empty: none, or the plan shows it
     std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one
+    std::optional<SafeStopsOf<planning::Space>> safe_stops;  ///< along the plan; empty if nobody looked for them
+    std::optional<Replanned> replanned;                      ///< empty: the plan begins on its own
 };
 
 /// How a solution names its problem; see ProblemReference.

@@ -8,6 +8,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/controllers/space_axes.hpp"
 #include "downwash/controllers/space_limits.hpp"
+#include "downwash/problems/space_problem_model.hpp"
 #include "downwash/results/order_reader.hpp"
 #include "downwash/results/plan_reader.hpp"
 #include "downwash/results/solution_document.hpp"
@@ -31,6 +32,9 @@ bool is_at(const SpacePoint& a, const SpacePoint& b) {
 
 /// Where a plan has to begin. @param plan whose yaw any start with a given attitude takes
 SpacePoint begin_of(const SpaceStart& start, const SpacePlan& plan) {
+    if (start.reference) {
+        return reference_at(start);
+    }
     SpacePoint begin;
     std::copy(start.position_m.begin(), start.position_m.end(), begin.position);
     begin.position[space::yaw] = start.attitude ? plan.reference.front().point.position[space::yaw] : start.yaw_rad;
@@ -178,6 +182,9 @@ SpaceSolution read_solution(const std::string& path, const SpaceProblem& problem
         if (reader.errors().empty()) {
             warn_of_reference(reader, *text.reference_node, text.plan, problem);
         }
+        problems::read_stops(reader, root, text.plan.tick_s, solution.safe_stops, [&](const Node& rest) {
+            return problems::read_space_configuration(reader, rest, text.plan.joints);
+        });
         solution.plan = std::move(text.plan);
         solution.order = problems::read_order(reader, root, problem);
     };

@@ -108,12 +108,15 @@ std::string solution_json(const SpaceSolution& solution, const SpaceProblemRefer
         {"planning", search != nullptr ? planning_json<planning::Space>(*search, search->planning, axes) : Json()},
         {"certificate", search != nullptr ? certificate_json(search->certificate) : Json()},
         {"plan", plan_json(solution.plan)},
-        {"stops", nullptr},
+        {"stops", stops_json(solution.safe_stops, solution.plan ? solution.plan->tick_s : 0, axes)},
         {"execution", execution_json(solution)},
         {"files", files},
     };
     if (solution.order) {
         document["order"] = order_json(*solution.order);
+    }
+    if (solution.replanned) {
+        document["replanned"] = replanned_json(*solution.replanned);
     }
     // A file name may be any bytes; what is no UTF-8 in it is replaced.
     return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

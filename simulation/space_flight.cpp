@@ -120,7 +120,7 @@ SpaceFlight fly(const SpaceRobot& robot, const SpacePlan& plan, const SpaceMotio
     SpaceFlight flight;
     simulation::NoEffectInSpace none;
     const auto loop = made_loop(robot, settings, none);
-    loop->start(start);
+    loop->start(start, settings.carry);
     const double tick_s = 1 / robot.controller.rate_hz;
     std::vector<FlownHover> hovers;
     if (settings.goals != nullptr) {

@@ -19,6 +19,7 @@ namespace downwash {
 /// In what and under which rules a plan in space is flown.
 struct SpaceFlightSettings {
     SpaceWorld world = {};
+    SpaceCarry carry = {};  ///< what the vehicle carries at the first knot
     /// Surfaces that act on the rotors; nullptr: none, and everything is flyable. One flight at a time.
     simulation::SpaceEffect* effect = nullptr;
     simulation::SpaceAero aero = {};
@@ -55,6 +56,7 @@ struct SpaceFlight : FlightSums {
     double max_saturation = 0;  ///< greatest demand over its limit; above 1 something was clipped
     int joints = 0, rotor_count = 0;
     bool has_rotor_lag = false;
+    AnySpaceState end{};                ///< the vehicle at the end
     std::vector<SpaceGoalVisit> goals;  ///< one for each goal of the rule, in their order there
     /// One per control tick, the last one at the end of the flight. Its commands are those that the controller would
     /// give next, or 0 where numbers are beyond max_result.

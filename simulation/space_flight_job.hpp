@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "downwash/base/export.hpp"
@@ -36,6 +37,8 @@ struct SpaceFlightLeg {
     AnySpaceState end = {};          ///< the vehicle at its end, or where it was rejected
 };
 
+class SpaceGoalRule;  // space_goal_rule.hpp
+
 /// A flight in space along one or more segments, each beginning where the one before ended.
 struct SpaceFlightJob {
     AnySpaceState start;               ///< see SpacePool::state_at()
@@ -48,6 +51,9 @@ struct SpaceFlightJob {
     /// is then a hover. 0: no goal.
     std::int64_t judged_ticks = 0;
     static constexpr std::int64_t judging_step_ticks = 5;
+    /// Its first goal is judged in place of the pool's; nullptr: the pool's. Must outlive the flight.
+    const SpaceGoalRule* goal = nullptr;
+    std::optional<double> margin_m = {};  ///< in place of the pool's
 
     /// The leg on which the flight ended early; nullptr when it did not.
     [[nodiscard]] const SpaceFlightLeg* rejected_leg() const noexcept {

@@ -220,6 +220,7 @@ void SpaceFlying::end() {
     }
     flight_.rejection = rejection_;
     flight_.outcome = outcome_of(rejection_);
+    flight_.end = loop_.state();
     flight_.energy_j = flight_.rows.back().energy_j;
     flight_.duration_s = flight_.rows.back().t_s;
 }

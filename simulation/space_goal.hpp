@@ -21,6 +21,8 @@ struct SpaceEndEffectorGoal {
     double tolerance_m = 0.1;                                      ///< Euclidean distance, > 0
     std::optional<Vector3> direction;                              ///< of the tool, of any length but zero; empty: any
     double direction_tolerance_rad = default_angle_tolerance_rad;  ///< half angle of a cone about it, > 0
+
+    friend bool operator==(const SpaceEndEffectorGoal&, const SpaceEndEffectorGoal&) = default;
 };
 
 /// The end effector at a point with all of its attitude.
@@ -29,6 +31,8 @@ struct SpacePoseGoal {
     Vector3 rpy_rad = {};                                ///< of the last link's axes: R = Rz(yaw) Ry(pitch) Rx(roll)
     double tolerance_m = 0.1;                            ///< > 0
     double tolerance_rad = default_angle_tolerance_rad;  ///< of the one turn between both attitudes, > 0
+
+    friend bool operator==(const SpacePoseGoal&, const SpacePoseGoal&) = default;
 };
 
 /// 10 degrees: the target is in the middle third of a picture 60 degrees wide. Half of that would be less than what
@@ -43,6 +47,8 @@ struct SpaceCameraGoal {
     double view_cone_rad = 0.5235987755982988;  ///< greatest angle between that direction and the line to the target
     double aim_tolerance_rad = default_aim_tolerance_rad;  ///< greatest angle between the tool's direction and the line
     bool sees = true;                                      ///< whether no obstacle may stand between camera and target
+
+    friend bool operator==(const SpaceCameraGoal&, const SpaceCameraGoal&) = default;
 };
 
 /// The multirotor and its arm; an empty coordinate is free.
@@ -51,6 +57,8 @@ struct SpaceConfigurationGoal {
     std::vector<double> joints_rad;                      ///< of all joints; empty: free
     double tolerance_m = 0.1;                            ///< Euclidean distance over the given coordinates, > 0
     double tolerance_rad = default_angle_tolerance_rad;  ///< of yaw and of each joint, > 0
+
+    friend bool operator==(const SpaceConfigurationGoal&, const SpaceConfigurationGoal&) = default;
 };
 
 /// A surface that the robot must touch and press on, along its normal.
@@ -66,6 +74,8 @@ struct SpaceContactGoal {
 
     /// The allowed error of the mean force over a second [N].
     [[nodiscard]] double tolerance_n() const noexcept { return force_tolerance_n.value_or(0.2 * force_n); }
+
+    friend bool operator==(const SpaceContactGoal&, const SpaceContactGoal&) = default;
 };
 
 using SpaceGoalKind =
@@ -76,6 +86,8 @@ struct SpaceGoal {
     SpaceGoalKind kind;                  ///< unused where there are alternatives
     double hold_s = 5;                   ///< how long the last reference point is held, >= 1
     std::vector<SpaceGoal> any_of = {};  ///< alternatives, of which any will do; not nested
+
+    friend bool operator==(const SpaceGoal&, const SpaceGoal&) = default;
 };
 
 }  // namespace downwash

@@ -56,6 +56,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         lanes_->tick[number_] = 0;
         free_ = {};
         min_clearance_m_ = std::numeric_limits<double>::infinity();
+        margin_m_ = job.margin_m.value_or(setting_->setup.margin_m);
         begin_leg();
         if (const Rejection rejection = rejection_at_start(); rejection != Rejection::none) {
             end_with(rejection);
@@ -77,6 +78,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
         free_ = other.free_;
         min_clearance_m_ = other.min_clearance_m_;
         hover_ = other.hover_;
+        margin_m_ = other.margin_m_;
         lanes_->is_active[other.number_] = 0;
     }
 
@@ -190,7 +192,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
             is_judged_leg() ? std::max<std::int64_t>(1, segment.ticks() - job_->judged_ticks) : segment.ticks());
         write(BasicSpaceSums<double>{space_tracking_error_m(plant().q, from.position)}, lanes_->sums);
         if (is_judged_leg()) {
-            hover_ = setting_->setup.goal->hover_at(0, segment.to());
+            hover_ = goal().hover_at(0, segment.to());
         }
     }
 
@@ -211,7 +213,10 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
     }
     [[nodiscard]] bool meets_goal_now() const {
         const SpaceMotion motion = motion_of<n>(plant());
-        return meets_goal(setting_->setup.goal->error(hover_, motion, *description_), motion);
+        return meets_goal(goal().error(hover_, motion, *description_), motion);
+    }
+    [[nodiscard]] const SpaceGoalRule& goal() const noexcept {
+        return job_->goal != nullptr ? *job_->goal : *setting_->setup.goal;
     }
 
     /// What speaks against a leg that was flown to its end.
@@ -249,9 +254,8 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
             double moved_m = motion_m(model_->reach, change);
             double bent_m = joint_motion_m(model_->reach, change);
             if (!(moved_m < free_.to_obstacles_m && bent_m < free_.to_itself_m) || !is_within_joint_limits()) {
-                const double margin_m = setting_->setup.margin_m;
-                free_ = checker->free_motion(pose, margin_m, max_free_motion_m);
-                if (free_.is_none() || checker->comes_nearer_between(pose_in(lanes_->before), pose, margin_m)) {
+                free_ = checker->free_motion(pose, margin_m_, max_free_motion_m);
+                if (free_.is_none() || checker->comes_nearer_between(pose_in(lanes_->before), pose, margin_m_)) {
                     return Rejection::collision;
                 }
                 looked_at_ = pose;
@@ -350,6 +354,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
     SpaceChecker::FreeMotion free_;                                     ///< how far from there none can be
     double min_clearance_m_ = std::numeric_limits<double>::infinity();  ///< since the job began, when wanted
     SpaceGoalHover hover_;                                              ///< of a leg that is judged
+    double margin_m_ = 0;  ///< of the job
 };
 
 }  // namespace downwash::simulation

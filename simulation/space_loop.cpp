@@ -2,8 +2,10 @@
 
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/simulation/space_vehicle.hpp"
 
 #ifndef DOWNWASH_MAX_JOINTS
 #error "the build says how many joints an arm in space may have"
@@ -13,6 +15,32 @@ namespace downwash {
 
 int max_built_joints() noexcept {
     return DOWNWASH_MAX_JOINTS;
+}
+
+namespace {
+
+/// The numbers of a law's memory by the number of joints.
+template <class Law, int... n>
+int memory_size_of(int joints, std::integer_sequence<int, n...> /*all*/) {
+    static constexpr int sizes[] = {number_count<double, typename Law::template Memory<double, n>>...};
+    return sizes[joints];
+}
+
+}  // namespace
+
+int memory_size(const SpaceLaw& law, int joints) noexcept {
+    return std::visit(
+        [joints]<class Law>(const Law& /*law*/) {
+            return memory_size_of<Law>(joints, std::make_integer_sequence<int, max_joints + 1>());
+        },
+        law);
+}
+
+SpaceCarry carry_of(const SpaceRobot& robot, const AnySpaceState& vehicle) {
+    const double* const thrust_n = vehicle.plant.thrust_n;
+    const double* const memory = vehicle.memory.number;
+    return {{thrust_n, thrust_n + robot.plant.rotors.size()},
+            {memory, memory + memory_size(robot.controller.law, robot.joints())}};
 }
 
 namespace simulation {

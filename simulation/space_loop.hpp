@@ -3,10 +3,12 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "downwash/aeromap/aero_settings.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/base/vector3.hpp"
+#include "downwash/controllers/space_law.hpp"
 #include "downwash/controllers/space_reference.hpp"
 #include "downwash/dynamics/plant.hpp"
 #include "downwash/dynamics/space_contact.hpp"
@@ -31,6 +33,20 @@ struct SpaceMotion {
 
     friend bool operator==(const SpaceMotion&, const SpaceMotion&) = default;
 };
+
+/// What a vehicle in flight carries besides its motion.
+struct SpaceCarry {
+    /// Free-air thrust that the rotors' lag has reached [N], of each rotor; empty: they carry the weight.
+    std::vector<double> rotor_thrust_n;
+    /// Numbers of the control law's memory, in the order of its Memory; empty: that of a law that has come to rest.
+    std::vector<double> controller_memory;
+};
+
+/// How many numbers a law remembers that flies a vehicle with so many joints.
+[[nodiscard]] DOWNWASH_EXPORT int memory_size(const SpaceLaw& law, int joints) noexcept;
+
+/// What a vehicle of a robot carries.
+[[nodiscard]] DOWNWASH_EXPORT SpaceCarry carry_of(const SpaceRobot& robot, const AnySpaceState& vehicle);
 
 /// The vehicle in space at one control tick and the commands it holds until the next; SI units.
 struct SpaceFlightRow {
@@ -78,9 +94,11 @@ class DOWNWASH_EXPORT SpaceLoop {
     SpaceLoop(const SpaceLoop&) = delete;
     SpaceLoop& operator=(const SpaceLoop&) = delete;
 
-    /// The vehicle in a motion: its law has come to rest there, rotors carry its weight, it has spent no energy and was
-    /// always in this state.
-    virtual void start(const SpaceMotion& motion) = 0;
+    /// The vehicle in a motion: it has spent no energy and was always in this state.
+    /// @pre what it carries is of this robot
+    virtual void start(const SpaceMotion& motion, const SpaceCarry& carry) = 0;
+    /// The same with a law that has come to rest there, and rotors that carry the weight.
+    void start(const SpaceMotion& motion) { start(motion, {}); }
     /// The vehicle of another flight in the same world goes on here.
     virtual void take_over(const AnySpaceState& state) = 0;
     /// Everything about the vehicle that changes in flight.

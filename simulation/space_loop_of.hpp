@@ -37,9 +37,11 @@ SpaceTickModel<n> make_space_tick_model(const SpaceRobot& robot, const SpaceAero
     return model;
 }
 
-/// The state of a vehicle with a motion: rotors carry its weight, and its law has come to rest there.
+/// The state of a vehicle with a motion. Where it carries nothing, rotors carry its weight, and its law has come to
+/// rest there.
 template <int n>
-SpaceVehicle<double, n> vehicle_at(const SpaceTickModel<n>& model, const SpaceMotion& motion) {
+SpaceVehicle<double, n> vehicle_at(const SpaceTickModel<n>& model, const SpaceMotion& motion,
+                                   const SpaceCarry& carry = {}) {
     SpaceVehicle<double, n> vehicle{};
     dynamics::SpaceState<double, n>& plant = vehicle.plant;
     std::copy_n(motion.position_m.begin(), 3, plant.q);
@@ -52,6 +54,8 @@ SpaceVehicle<double, n> vehicle_at(const SpaceTickModel<n>& model, const SpaceMo
     dynamics::allocate(model.nominal.allocation, weight, plant.thrust_n);
     std::visit([&](const auto& law) { remember(law.rested(model.nominal, plant, model.tick_s), vehicle.memory); },
                model.law);
+    std::ranges::copy(carry.rotor_thrust_n, plant.thrust_n);
+    std::ranges::copy(carry.controller_memory, vehicle.memory.number);
     return vehicle;
 }
 
@@ -92,11 +96,12 @@ class SpaceLoopOf final : public SpaceLoop {
                 {dynamics::joint_steps(model_.nominal.plant, model_.tick_s)},
                 world_.numbers.center_of_mass_m} {
         quiet_.gust_m_s = 0;
-        start({});
+        SpaceLoop::start(SpaceMotion{});
     }
 
-    void start(const SpaceMotion& motion) override {
-        static_cast<SpaceVehicle<double, n>&>(state_) = vehicle_at(model_, motion);
+    using SpaceLoop::start;
+    void start(const SpaceMotion& motion, const SpaceCarry& carry) override {
+        static_cast<SpaceVehicle<double, n>&>(state_) = vehicle_at(model_, motion, carry);
         forget();
     }
     void take_over(const AnySpaceState& state) override { copy_common(state, state_); }

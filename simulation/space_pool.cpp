@@ -25,7 +25,8 @@ struct SpacePool::Impl {
     Impl(const Impl&) = delete;
     Impl& operator=(const Impl&) = delete;
 
-    [[nodiscard]] virtual AnySpaceState state_at(const SpaceMotion& motion, const SpaceWorld* world) const = 0;
+    [[nodiscard]] virtual AnySpaceState state_at(const SpaceMotion& motion, const SpaceWorld* world,
+                                                 const SpaceCarry& carry) const = 0;
     virtual void fly(std::span<SpaceFlightJob> jobs, std::span<SpaceFlightChain* const> chains) = 0;
     virtual void use_threads(int threads) = 0;
 };
@@ -196,9 +197,11 @@ class SpacePoolOf final : public SpacePool::Impl {
     SpacePoolOf(const SpacePoolSetup& setup, int threads, Instructions instructions)
         : family_(setup, instructions), pool_(family_, threads) {}
 
-    [[nodiscard]] AnySpaceState state_at(const SpaceMotion& motion, const SpaceWorld* world) const override {
+    [[nodiscard]] AnySpaceState state_at(const SpaceMotion& motion, const SpaceWorld* world,
+                                         const SpaceCarry& carry) const override {
         simulation::SpaceFlightState<double, n> state{};
-        static_cast<simulation::SpaceVehicle<double, n>&>(state) = simulation::vehicle_at(family_.model.tick, motion);
+        static_cast<simulation::SpaceVehicle<double, n>&>(state) =
+            simulation::vehicle_at(family_.model.tick, motion, carry);
         state.world = memory_at_start(
             world != nullptr ? make_space_world<n>(family_.setting.setup.robot, *world) : family_.setting.nominal,
             state.plant);
@@ -237,8 +240,8 @@ SpacePool::SpacePool(const SpacePoolSetup& setup, int threads, Instructions inst
 
 SpacePool::~SpacePool() = default;
 
-AnySpaceState SpacePool::state_at(const SpaceMotion& motion, const SpaceWorld* world) const {
-    return impl_->state_at(motion, world);
+AnySpaceState SpacePool::state_at(const SpaceMotion& motion, const SpaceWorld* world, const SpaceCarry& carry) const {
+    return impl_->state_at(motion, world, carry);
 }
 
 void SpacePool::fly(std::span<SpaceFlightJob> jobs) {

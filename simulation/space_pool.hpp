@@ -26,7 +26,8 @@ class DOWNWASH_EXPORT SpacePool {
 
     /// The vehicle in a motion, as SpaceLoop::start() has it.
     /// @param world in which it begins; nullptr: the nominal one
-    [[nodiscard]] AnySpaceState state_at(const SpaceMotion& motion, const SpaceWorld* world = nullptr) const;
+    [[nodiscard]] AnySpaceState state_at(const SpaceMotion& motion, const SpaceWorld* world = nullptr,
+                                         const SpaceCarry& carry = {}) const;
 
     /// Flies the jobs. No two threads may call this at once.
     void fly(std::span<SpaceFlightJob> jobs);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 #include "downwash/cli/planner_options.hpp"
 #include "downwash/problems/designed_robot.hpp"
 #include "downwash/problems/space_problem.hpp"
+#include "downwash/problems/space_problem_model.hpp"
+#include "downwash/results/run_folder.hpp"
 #include "downwash/results/space_solution_file.hpp"
 
 // What commands do with robots and problems in space that have the same names in the plane.
@@ -40,6 +43,21 @@ struct SolveInSpace {
     bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, force = false;
 };
 [[nodiscard]] ExitCode solve_in_space(const SolveInSpace& given);
+
+/// A search in space, and what is done with its result.
+struct SearchInSpace {
+    std::string problem;  ///< file
+    std::shared_ptr<const SpaceProblemModel> model;
+    RunFolder& folder;
+    std::vector<LocatedError> warnings;
+    int threads;
+    bool stop_at_first, no_cache, is_quiet, as_json;
+    std::string announcement;
+    std::optional<SpacePlan> known_plan = {};  ///< of an earlier plan, from which the new one takes over, and
+    std::optional<Replanned> replanned = {};   ///< how
+};
+/// @param interruption made before anything that takes long
+[[nodiscard]] ExitCode search_in_space(SearchInSpace search, Interruption& interruption);
 
 /// A flight in space for people: a verdict and a table. @param more rows of it, before those of the flight
 [[nodiscard]] std::string space_summary(const std::string& verdict, const SpaceSolution& solution,

@@ -12,8 +12,8 @@
 #include "downwash/cli/interruption.hpp"
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/plan_origin.hpp"
-#include "downwash/cli/planner_options.hpp"
 #include "downwash/cli/progress.hpp"
+#include "downwash/cli/replan_arguments.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/search_results.hpp"
@@ -22,39 +22,11 @@
 #include "downwash/planner/takeover.hpp"
 #include "downwash/problems/problem_reader.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/results/solution_file.hpp"
 
 namespace downwash::cli {
 namespace {
-
-namespace fs = std::filesystem;
-
-struct ReplanArguments {
-    std::string problem;
-    std::string plan;
-    double at_s = 0;
-    PlannerOptions planner;
-    int threads = default_threads();
-    std::optional<std::string> out;
-    CommandLimits limits;
-    bool stop_at_first = false, no_cache = false, is_quiet = false, as_json = false, force = false;
-};
-
-/// The problem that the plan was made for: that of its run folder or, where it has none, the one that is given.
-Problem problem_of_plan(const ReplanArguments& given) {
-    const fs::path effective = fs::path(plan_file(given.plan)).parent_path() / "effective.yaml";
-    std::error_code error;
-    return read_problem(fs::exists(effective, error) ? effective : fs::path(given.problem));
-}
-
-/// @param plan that is left
-std::int64_t tick_at(const ReplanArguments& given, const Plan& plan) {
-    if (!(given.at_s >= 0 && given.at_s <= plan.duration_s())) {
-        throw UsageError("--after is {:g}: expected 0 to {:g} s, where the reference of the plan ends", given.at_s,
-                         plan.duration_s());
-    }
-    return std::llround(given.at_s / plan.tick_s);
-}
 
 /// How the rest of the earlier plan flies in the problem as it is now.
 Replanned fly_rest(const ReplanArguments& given, const Takeover& from, const PlannableProblem& now) {
@@ -69,17 +41,16 @@ Replanned fly_rest(const ReplanArguments& given, const Takeover& from, const Pla
             {}};
 }
 
-std::string announcement(const Problem& problem, const Replanned& from) {
-    return fmt::format("{}: planning again from {:.2f} s of {}, whose rest ends {} here; seed {}", problem.name,
-                       from.t_s, from.plan, name_of(from.rest_outcome), problem.planner.seed);
-}
-
 ExitCode run(const ReplanArguments& given) {
+    if (is_space_problem_file(given.problem)) {
+        return replan_in_space(given);
+    }
     Interruption interruption(given.limits);
     require_whole_plan(given.plan);
-    const Problem flown = problem_of_plan(given);
+    const Problem flown = read_problem(problem_of_plan(given));
     const Solution earlier = read_solution(plan_file(given.plan), flown);
-    const Takeover from = take_over(flown, *earlier.plan, earlier.order, tick_at(given, *earlier.plan));
+    const Takeover from = take_over(flown, *earlier.plan, earlier.order,
+                                    tick_at(given, earlier.plan->duration_s(), earlier.plan->tick_s));
     std::vector<LocatedError> warnings;
     const PlannableProblem plannable = read_plannable_problem(
         given.problem,
@@ -89,7 +60,8 @@ ExitCode run(const ReplanArguments& given) {
         },
         given.is_quiet ? nullptr : print_outdated, noting(warnings, given.is_quiet));
     const Problem& read = plannable.problem;
-    const fs::path out = folder_beside_plan(given.out, default_folder(read), "-replanned", plan_file(given.plan));
+    const std::filesystem::path out =
+        folder_beside_plan(given.out, default_folder(read), "-replanned", plan_file(given.plan));
     require_readable_again(read, out);
     RunFolder folder = claimed_folder(out, read, given.problem, given.force);
 
@@ -106,7 +78,7 @@ ExitCode run(const ReplanArguments& given) {
     Solution solution;
     {
         ProgressDisplay display(given.is_quiet);
-        display.say(announcement(read, replanned));
+        display.say(takeover_announcement(read.name, read.planner.seed, replanned));
         options.on_progress = [&](const Progress& progress) { display.show(progress); };
         solution = downwash::solve(plannable, options);
     }
@@ -120,6 +92,26 @@ ExitCode run(const ReplanArguments& given) {
 }
 
 }  // namespace
+
+std::string problem_of_plan(const ReplanArguments& given) {
+    const std::filesystem::path effective =
+        std::filesystem::path(plan_file(given.plan)).parent_path() / "effective.yaml";
+    std::error_code error;
+    return std::filesystem::exists(effective, error) ? effective.string() : given.problem;
+}
+
+std::int64_t tick_at(const ReplanArguments& given, double end_s, double tick_s) {
+    if (!(given.at_s >= 0 && given.at_s <= end_s)) {
+        throw UsageError("--after is {:g}: expected 0 to {:g} s, where the reference of the plan ends", given.at_s,
+                         end_s);
+    }
+    return std::llround(given.at_s / tick_s);
+}
+
+std::string takeover_announcement(const std::string& name, std::uint32_t seed, const Replanned& from) {
+    return fmt::format("{}: planning again from {:.2f} s of {}, whose rest ends {} here; seed {}", name, from.t_s,
+                       from.plan, name_of(from.rest_outcome), seed);
+}
 
 void add_replan(Command program, Action& action) {
     auto [command, given] = add_command<ReplanArguments>(

@@ -60,25 +60,6 @@ bool is_about_part(const Solution& solution) {
 }
 
 /// Where a plan takes over from another one, and how the two join.
-std::string takeover_rows(const Problem& problem, const Replanned& from, std::string_view unit) {
-    const Start& start = problem.start;
-    const double speed_m_s = std::hypot(start.velocity[plane::x], start.velocity[plane::z]);
-    std::string text =
-        table_row("starts", fmt::format("at {:.2f} s of {}: x {:.3f} m, z {:.3f} m, arm {:.1f} deg, {:.2f} m/s",
-                                        from.t_s, from.plan, start.at[plane::x], start.at[plane::z],
-                                        start.at[plane::arm] * degrees_per_radian, speed_m_s));
-    text += table_row("", from.same_reference_s
-                              ? fmt::format("with its reference, speed and acceleration; both plans are the same for "
-                                            "{:.2f} s more",
-                                            *from.same_reference_s)
-                              : "no plan takes over");
-    text +=
-        table_row("earlier plan", fmt::format("its rest ends {} here{}, cost {:.6g}{}{}", name_of(from.rest_outcome),
-                                              problem.uncertainty ? ", in the nominal world" : "", from.rest_cost,
-                                              unit.empty() ? "" : " ", unit));
-    return text;
-}
-
 std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution, const Execution& flight) {
     std::string text;
     const std::string_view symbol = unit_of(solution.objective);
@@ -187,6 +168,26 @@ bool was_out_of_reach(const Solution& solution) {
 }
 
 }  // namespace
+
+std::string takeover_rows(const Replanned& from, const std::string& place, bool has_worlds, std::string_view unit) {
+    std::string text = table_row("starts", fmt::format("at {:.2f} s of {}: {}", from.t_s, from.plan, place));
+    text += table_row("", from.same_reference_s
+                              ? fmt::format("with its reference, speed and acceleration; both plans are the same for "
+                                            "{:.2f} s more",
+                                            *from.same_reference_s)
+                              : "no plan takes over");
+    text +=
+        table_row("earlier plan", fmt::format("its rest ends {} here{}, cost {:.6g}{}{}", name_of(from.rest_outcome),
+                                              has_worlds ? ", in the nominal world" : "", from.rest_cost,
+                                              unit.empty() ? "" : " ", unit));
+    return text;
+}
+
+std::string stops_row(double share_without) {
+    return table_row("stops", share_without > 0
+                                  ? fmt::format("none is known to be safe for {:.1f} % of the way", 100 * share_without)
+                                  : "safe all along the way");
+}
 
 std::string most_stopping(const std::map<std::string, std::uint64_t>& stopped_by) {
     constexpr std::size_t most = 3;
@@ -302,7 +303,12 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
                                                solution.execution_world->index, solution.execution_world->seed));
     }
     if (solution.replanned) {
-        text += takeover_rows(problem, *solution.replanned, unit_of(solution.objective));
+        const Start& start = problem.start;
+        const double speed_m_s = std::hypot(start.velocity[plane::x], start.velocity[plane::z]);
+        text += takeover_rows(*solution.replanned,
+                              fmt::format("x {:.3f} m, z {:.3f} m, arm {:.1f} deg, {:.2f} m/s", start.at[plane::x],
+                                          start.at[plane::z], start.at[plane::arm] * degrees_per_radian, speed_m_s),
+                              problem.uncertainty.has_value(), unit_of(solution.objective));
     }
     if (solution.order) {
         text += order_rows(*solution.order, solution.plan.has_value(), problem.energy_budget_j);
@@ -314,10 +320,7 @@ std::string summary_of(const std::string& verdict, const Problem& problem, const
         text += certificate_rows(*solution.certificate, is_about_part(solution), folder);
     }
     if (solution.safe_stops) {
-        const double share = solution.safe_stops->share_without;
-        text +=
-            table_row("stops", share > 0 ? fmt::format("none is known to be safe for {:.1f} % of the way", 100 * share)
-                                         : "safe all along the way");
+        text += stops_row(solution.safe_stops->share_without);
     }
     const SearchRecord& record = solution.planning;
     text +=

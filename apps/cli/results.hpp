@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "downwash/cli/exit_code.hpp"
 #include "downwash/planner/solution.hpp"
@@ -24,6 +25,14 @@ namespace downwash::cli {
 /// The last rows of a summary: which files there are, the page, and what else is in the folder. @param names of the
 /// files
 [[nodiscard]] std::string file_rows(const std::filesystem::path& folder, const std::string& names);
+
+/// Rows about a plan that takes over from an earlier one. @param place of the vehicle at its start
+/// @param has_worlds whether the problem has an uncertainty   @param unit of costs
+[[nodiscard]] std::string takeover_rows(const Replanned& from, const std::string& place, bool has_worlds,
+                                        std::string_view unit);
+
+/// A row about stops along a plan. @param share_without see SafeStops
+[[nodiscard]] std::string stops_row(double share_without);
 
 /// The result of a search, in one sentence.
 [[nodiscard]] std::string verdict_on_search(const Solution& solution);

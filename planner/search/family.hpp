@@ -14,6 +14,10 @@
 // There is one search, for vehicles in a plane of motion and in space. What it works on are the types of a family.
 // Functions that it calls on them (configuration_of(), at_rest(), keeps_limits(), ...) are overloaded for both.
 
+namespace downwash {
+class WorldFlights;
+}  // namespace downwash
+
 namespace downwash::planning {
 
 class SearchSpace;
@@ -23,12 +27,11 @@ template <class Family>
 class LevelWaysOf;
 class ProblemWorlds;
 class SpaceProblemWorlds;
-class StopFinder;
-class NoStopFinder;
 
 /// Vehicles in a vertical plane.
 struct DOWNWASH_EXPORT Plane {
     using Problem = downwash::Problem;
+    using Start = downwash::Start;
     using Goal = downwash::Goal;
     using FlightModel = downwash::FlightModel;
     using Effects = AeroMap;  ///< of surfaces
@@ -51,7 +54,7 @@ struct DOWNWASH_EXPORT Plane {
     using NarrowWays = PassageSampler;      ///< through which a tree grows
     using Execution = downwash::Execution;  ///< with direct aerodynamics
     using ProblemWorlds = planning::ProblemWorlds;
-    using StopFinder = planning::StopFinder;
+    using WorldFlights = downwash::WorldFlights;  ///< of whole plans
     /// Whether a path to a goal before the last is executed without what comes before it, from where the planner's own
     /// model has the vehicle then.
     static constexpr bool executes_parts_alone = false;
@@ -66,6 +69,7 @@ struct SpaceFlightWorld {
 /// Vehicles in space with any number of joints.
 struct DOWNWASH_EXPORT Space {
     using Problem = SpaceProblem;
+    using Start = SpaceStart;
     using Goal = SpaceGoal;
     using FlightModel = SpaceProblemModel;
     using Effects = SurfaceVolumes;
@@ -88,7 +92,7 @@ struct DOWNWASH_EXPORT Space {
     using NarrowWays = LevelWaysOf<Space>;
     using Execution = SpaceFlight;
     using ProblemWorlds = SpaceProblemWorlds;
-    using StopFinder = NoStopFinder;
+    using WorldFlights = SpaceProblemWorlds;
     static constexpr bool executes_parts_alone = true;  ///< direct flights in space take long
 };
 

@@ -81,21 +81,6 @@ std::span<const SpaceGoal> alternatives(const SpaceGoal& goal) noexcept {
 
 }  // namespace
 
-SpacePoint reference_at(const SpaceStart& start) noexcept {
-    const SpaceMotion motion = start_motion(start);
-    SpacePoint point = at_rest(configuration_of(motion));
-    if (!start.attitude) {
-        point.position[space::yaw] = start.yaw_rad;
-    }
-    std::ranges::copy(motion.velocity_m_s, point.velocity);
-    std::ranges::copy(motion.joint_rates_rad_s, point.velocity + space::first_joint);
-    return point;
-}
-
-AnySpaceState start_state(const SpaceProblemModel& model, const SpaceStart& start) {
-    return SpacePool(SpacePoolSetup{model.problem().robot}).state_at(start_motion(start));
-}
-
 SpaceSearchSpace::SpaceSearchSpace(const SpaceProblem& problem, const SpaceProblemModel& model)
     : SearchAxesOf<Space>(search_axes(problem, model.collisions().robot_reach_m())),
       model_(model),

@@ -14,16 +14,10 @@
 
 namespace downwash::planning {
 
-/// The reference at the start of a problem: where the vehicle is, as it moves.
-[[nodiscard]] SpacePoint reference_at(const SpaceStart& start) noexcept;
-
 /// Where a problem begins.
 [[nodiscard]] inline SpaceConfiguration place_of(const SpaceStart& start) noexcept {
     return configuration_of(reference_at(start));
 }
-
-/// The vehicle at the start of a problem, its controller at rest.
-[[nodiscard]] AnySpaceState start_state(const SpaceProblemModel& model, const SpaceStart& start);
 
 /// The space of configurations of one problem in space: distances, samples, goals and collisions of the level vehicle.
 /// The vehicle can be turned and moved to any place, so a goal binds no more than the arm's joints and the heading.

@@ -199,7 +199,6 @@ TEST_CASE("Commands that cannot take a problem in space say what can be done wit
         CHECK(std::count(result.err.begin(), result.err.end(), '\n') == 1);
     };
     const std::string in_space = "around_a_girder.yaml:11:26: environment.bounds.y_m makes this a problem in space";
-    rejected(words("replan", girder, "--plan run --after 3"), "makes this a problem in space");
     rejected(words("aeromap build", girder, "-o map.csv"), in_space);
     rejected(words("aeromap query", girder, "--at 0 0 1"), in_space);
     rejected(words("export run --format csv -o run.csv"), "this is a run in space");

@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "../support/test_problem.hpp"
-#include "downwash/planner/braking.hpp"
 #include "downwash/planner/goal_search.hpp"
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/solve.hpp"
+#include "downwash/planner/stop_finder.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 

@@ -6,6 +6,7 @@
 
 #include "downwash/dynamics/plant_model.hpp"
 #include "downwash/problems/key_reference.hpp"
+#include "downwash/problems/space_problem_model.hpp"
 #include "downwash/problems/space_problem_parameters.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/problems/space_problem_writer.hpp"
@@ -123,6 +124,38 @@ TEST_CASE("every kind of goal, in lists, as alternatives and in any order, is re
     const std::string before = problem_sha256(problem);
     problem.robot.links[1].max_torque_nm *= 1.000001;
     CHECK(problem_sha256(problem) != before);
+}
+
+TEST_CASE("the start of a vehicle in flight in space is read as it was written") {
+    const TestFolder folder;
+    SpaceProblem problem = read_good_space_problem(folder);
+    const SpaceProblemModel model(problem);
+    AnySpaceState flying = start_state(model, problem.start);
+    const std::array attitude = normalised({1, 0.05, -1.0 / 30, 0.2});
+    std::copy(attitude.begin(), attitude.end(), flying.plant.q + 3);
+    for (int i = 0; i < 8; ++i) {
+        flying.plant.u[i] = 0.1 / (i + 3);
+    }
+    flying.plant.thrust_n[1] = 20.0 / 3;
+    flying.memory.number[5] = 1.0 / 7;
+    SpacePoint reference = reference_at(problem.start);
+    reference.velocity[0] = 1.0 / 3;
+    reference.acceleration[5] = 1e-9 / 3;
+    problem.start = start_of(model, flying, reference);
+    CHECK(space_problem_errors(problem).empty());
+    CHECK_FALSE(is_at_rest(problem.start));
+    const SpaceStart again = read_again(folder, problem).start;
+    CHECK(start_motion(again) == start_motion(problem.start));
+    CHECK(reference_at(again) == reference);
+    CHECK(again.carry.rotor_thrust_n[1] == 20.0 / 3);
+    CHECK(again.carry.controller_memory == problem.start.carry.controller_memory);
+    CHECK(is_same(start_state(model, again), start_state(model, problem.start)));
+    CHECK(start_state(model, again).memory.number[5] == 1.0 / 7);
+    // What the vehicle carries alone says that it is in flight.
+    SpaceStart still = read_good_space_problem(folder).start;
+    CHECK(is_at_rest(still));
+    still.carry.controller_memory = again.carry.controller_memory;
+    CHECK_FALSE(is_at_rest(still));
 }
 
 TEST_CASE("a start in space at which the robot touches itself is an error") {
