@@ -83,24 +83,6 @@ std::string rows_of(const SpaceProblem& problem, const SpaceSearchResult& search
     return text;
 }
 
-SpaceSolution solution_of(const SpaceProblem& problem, std::shared_ptr<const SpaceSearchResult> search, int threads) {
-    SpaceSolution solution;
-    solution.status = search->status;
-    solution.interrupted = search->interrupted;
-    solution.variant = problem.planner.variant;
-    solution.algorithm = problem.planner.algorithm;
-    solution.objective = problem.planner.objective;
-    solution.seed = problem.planner.seed;
-    solution.threads = threads;
-    solution.joints = problem.robot.joints();
-    solution.plan = search->plan;
-    solution.execution = search->execution;
-    solution.aero = problem.aero.enabled;
-    solution.order = search->order;
-    solution.search = std::move(search);
-    return solution;
-}
-
 }  // namespace
 
 ExitCode solve_in_space(const SolveInSpace& given) {
@@ -131,9 +113,7 @@ ExitCode solve_in_space(const SolveInSpace& given) {
     const SpaceSolution solution = solution_of(problem, search, given.threads);
     const SpaceRunRecord record =
         folder.write(problem, given.problem, warnings, solution, input_facts(problem, model->scene()));
-    if (solution.execution) {
-        write_page(folder.path(), record);
-    }
+    write_page(folder.path(), record);
     if (given.as_json) {
         fmt::print("{}", record.solution_text);
     } else {
