@@ -39,6 +39,10 @@ struct SpaceSolution {
     std::optional<ExecutionWorld> execution_world;  ///< empty: the nominal one
 };
 
+/// What a search has found for a problem, with the settings of the problem.
+[[nodiscard]] DOWNWASH_EXPORT SpaceSolution solution_of(const SpaceProblem& problem,
+                                                        std::shared_ptr<const SpaceSearchResult> search, int threads);
+
 /// How a solution names its problem; see ProblemReference.
 struct SpaceProblemReference {
     std::string name, file, sha256;
