@@ -2,22 +2,20 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <memory>
 #include <mutex>
 #include <new>
 #include <utility>
+#include <variant>
 
 #include "downwash/base/parallel.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/base/version.hpp"
+#include "downwash/bench/campaign_experiment.hpp"
 #include "downwash/bench/campaign_store.hpp"
 #include "downwash/bench/machine.hpp"
-#include "downwash/bench/plan_evaluation.hpp"
 #include "downwash/bench/saved_copy.hpp"
-#include "downwash/planner/solve.hpp"
-#include "downwash/problems/algorithms.hpp"
-#include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/any_problem.hpp"
 
 namespace downwash::bench {
 namespace {
@@ -84,11 +82,11 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
     if (!is_sharded) {  // continued on this computer only
         settings.insert(settings.begin() + 4, {{"host", host_name()}, {"processor", processor()}});
     }
-    for (const Problem& problem : read.problems) {
-        settings.emplace_back("problem " + problem.name, problem_sha256(problem));
+    for (const AnyProblem& problem : read.problems) {
+        settings.emplace_back("problem " + problem_name(problem), problem_sha256(problem));
     }
-    for (const Problem& problem : read.evaluated_in) {
-        settings.emplace_back("evaluated in " + problem.name, problem_sha256(problem));
+    for (const AnyProblem& problem : read.evaluated_in) {
+        settings.emplace_back("evaluated in " + problem_name(problem), problem_sha256(problem));
     }
     for (std::size_t i = 0; i < c.expect.size(); ++i) {
         settings.emplace_back("expectation " + std::to_string(i + 1), target_text(c.expect[i]));
@@ -97,42 +95,11 @@ std::vector<std::pair<std::string, std::string>> settings_of(const ReadCampaign&
 }
 
 /// The objectives for which a campaign plans a problem: those of the campaign, or the problem's own.
-std::vector<CostFunction> objectives_of(const Campaign& campaign, const Problem& problem) {
+std::vector<CostFunction> objectives_of(const Campaign& campaign, const AnyProblem& problem) {
     if (!campaign.objectives) {
-        return {problem.planner.objective};
+        return {planner_of(problem).objective};
     }
     return {campaign.objectives->begin(), campaign.objectives->end()};
-}
-
-void apply(const PlannerSetup& planner, Problem& problem) {
-    problem.planner.variant = planner.variant;
-    problem.planner.algorithm = planner.algorithm;
-    if (planner.margin_m) {
-        problem.planner.safety_margin_m = *planner.margin_m;
-    }
-    // Parameters of the problem may be those of another algorithm.
-    std::erase_if(problem.planner.parameters, [&](const auto& parameter) {
-        return algorithm_parameter(problem.planner, parameter.first) == nullptr;
-    });
-    for (const auto& [name, value] : planner.parameters) {
-        problem.planner.parameters[name] = value;
-    }
-}
-
-/// Why a variant cannot be planned with an algorithm and parameters; empty when it can.
-std::string error_of_combination(Problem problem, const PlannerSetup& planner) {
-    apply(planner, problem);
-    for (const auto& [name, value] : planner.parameters) {
-        if (algorithm_parameter(problem.planner, name) == nullptr) {
-            return planner.name() + ": the algorithm has no parameter " + name + " for this variant";
-        }
-    }
-    for (const KeyError& error : problem_errors(problem)) {
-        if (error.key.starts_with("planner.")) {
-            return planner.name() + ": " + error.key + " " + error.message;
-        }
-    }
-    return "";
 }
 
 /// A run that is missing.
@@ -158,81 +125,55 @@ std::vector<Task> runs_of(const CampaignPlan& plan, std::optional<std::uint64_t>
     return tasks;
 }
 
-void fill(Run& run, const Solution& solution) {
-    const SearchRecord& record = solution.planning;
-    run.status = static_cast<RunStatus>(solution.status);
-    if (record.first_solution_wall_s) {
-        run.first_solution_s = record.setup_wall_s + *record.first_solution_wall_s;
+/// Of the first problem in a plane and of the first in space; empty when a planner can plan both.
+std::string error_of_combination(const ReadCampaign& read, const PlannerSetup& planner) {
+    for (std::size_t family = 0; family < std::variant_size_v<AnyProblem>; ++family) {
+        const auto first = std::ranges::find(read.problems, family, &AnyProblem::index);
+        if (first != read.problems.end()) {
+            if (std::string error = error_of_combination(*first, planner); !error.empty()) {
+                return error;
+            }
+        }
     }
-    run.iterations = record.iterations;
-    run.edges_simulated = record.edges_simulated;
-    run.states_checked = record.states_checked;
-    run.simulated_s = record.simulated_s;
-    run.improvements = record.improvements;
-    for (Improvement& improvement : run.improvements) {
-        improvement.wall_s += record.setup_wall_s;
-    }
-    run.rejections = record.rejected;
-    if (const auto discarded = record.rejected.find("direct_flight"); discarded != record.rejected.end()) {
-        run.discarded = discarded->second;
-    }
-    if (solution.certificate) {
-        const Certificate& certificate = *solution.certificate;
-        run.certificate = {certificate.is_given, certificate.worlds, certificate.failures, certificate.attempts};
-    }
-    if (record.first_certified_wall_s) {
-        run.first_certified_s = record.setup_wall_s + *record.first_certified_wall_s;
-    }
-    if (solution.status != Status::solved) {
-        run.nearest_approach_m = solution.nearest_approach_m;
-        return;
-    }
-    run.cost = solution.cost;
-    const Execution& flight = solution.execution.value();
-    run.flight = FlightFigures{flight.outcome,  solution.execution_cost, flight.energy_j,    flight.duration_s,
-                               flight.length_m, flight.min_clearance_m,  flight.goal_error_m};
+    return "";
 }
 
-/// One run: the search and the flight of its plan. An error is in the result, never thrown, apart from std::bad_alloc:
-/// that there was no memory left says nothing about the search.
-/// @param how the map to use, the stop token, and whether to stop at the first solution
-/// @param evaluation flies the plan after the clock has stopped; nullptr: it is not flown in other worlds
-Run attempt(Problem problem, const PlannerSetup& planner, std::uint32_t seed, const SolveOptions& how,
-            PlanEvaluation* evaluation) {
-    apply(planner, problem);
-    problem.planner.seed = seed;
-    Run run;
-    run.seed = seed;
-    std::optional<Plan> solved;
-    const auto begin = std::chrono::steady_clock::now();
-    try {
-        Solution solution = solve(problem, how);
-        fill(run, solution);
-        solved = solution.status == Status::solved ? std::move(solution.plan) : std::nullopt;
-    } catch (const InputError& error) {
-        run.status = RunStatus::impossible;
-        run.error = error.what();
-    } catch (const std::bad_alloc&) {
-        throw;
-    } catch (const std::exception& error) {
-        run.status = RunStatus::error;
-        run.error = error.what();
-    }
-    run.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (evaluation != nullptr && solved && !how.stop.stop_requested()) {
-        run.in_worlds = evaluation->evaluate(*solved);
-    }
-    return run;
+/// A problem with the limits of a campaign.
+AnyProblem limited(AnyProblem problem, const CampaignPlan& plan, const Campaign& campaign) {
+    PlannerSettings& settings = planner_of(problem);
+    settings.time_limit_s = plan.time_limit_s;
+    settings.max_iterations = campaign.max_iterations;
+    settings.check_execution = settings.check_execution && campaign.check_execution;
+    settings.certify = settings.certify && campaign.certify;
+    return problem;
 }
 
-/// Whether the cache holds the whole map of a problem.
-bool is_in_cache(const Problem& problem, const std::filesystem::path& cache) {
-    return !cache.empty() && make_flight_model(problem)->make_map(problem.bounds, cache)->filled_share() == 1;
+/// All experiments of a campaign, in the order of its plan.
+std::vector<std::unique_ptr<CampaignExperiment>> all_experiments(const ReadCampaign& read, const CampaignPlan& plan,
+                                                                 const CampaignRunOptions& options, int jobs) {
+    std::vector<std::unique_ptr<CampaignExperiment>> all;
+    for (std::size_t p = 0; p < read.problems.size(); ++p) {
+        const AnyProblem problem = limited(read.problems[p], plan, read.campaign);
+        const AnyProblem& judging = read.evaluated_in.empty() ? problem : read.evaluated_in.at(p);
+        const bool is_evaluated = plan.evaluation_worlds > 0 && uncertainty_of(judging).has_value();
+        const ExperimentSetup setup{problem,
+                                    is_evaluated ? std::optional(judging) : std::nullopt,
+                                    plan.evaluation_worlds,
+                                    plan.stop_at_first_solution,
+                                    options.map_cache,
+                                    options.stop};
+        const auto on_map_progress = [&](double share) {
+            if (options.on_map_progress) {
+                options.on_map_progress(problem_name(problem), share);
+            }
+        };
+        for (auto& experiment :
+             experiments_of(setup, objectives_of(read.campaign, problem), plan.planners, jobs, on_map_progress)) {
+            all.push_back(std::move(experiment));
+        }
+    }
+    return all;
 }
-
-static_assert(static_cast<int>(RunStatus::none) == static_cast<int>(Status::none));
-static_assert(static_cast<int>(RunStatus::approximate) == static_cast<int>(Status::approximate));
-static_assert(static_cast<int>(RunStatus::solved) == static_cast<int>(Status::solved));
 
 }  // namespace
 
@@ -240,9 +181,9 @@ CampaignPlan plan_of(const ReadCampaign& read, const std::optional<ShardRequest>
     const Campaign& c = read.campaign;
     CampaignPlan plan;
     plan.settings = settings_of(read, shard.has_value());
-    for (const Problem& problem : read.problems) {
+    for (const AnyProblem& problem : read.problems) {
         for (const CostFunction& objective : objectives_of(c, problem)) {
-            plan.experiments.push_back({problem.name, text_of(objective)});
+            plan.experiments.push_back({problem_name(problem), text_of(objective)});
         }
     }
     const std::vector<ParameterValues> parameter_sets =
@@ -251,7 +192,7 @@ CampaignPlan plan_of(const ReadCampaign& read, const std::optional<ShardRequest>
         for (const std::string& algorithm : c.algorithms) {
             for (const ParameterValues& parameters : parameter_sets) {
                 PlannerSetup planner{variant, algorithm, {}, parameters};
-                if (std::string error = error_of_combination(read.problems.at(0), planner); !error.empty()) {
+                if (std::string error = error_of_combination(read, planner); !error.empty()) {
                     plan.left_out.push_back(std::move(error));
                     continue;
                 }
@@ -294,47 +235,8 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
     std::erase_if(tasks, [&](const Task& task) { return store.has(task.experiment, task.planner, task.seed); });
     const int jobs = job_count(read.campaign, shard.has_value());
 
-    std::vector<Problem> problems;                     // one for each experiment
-    std::vector<std::shared_ptr<const AeroMap>> maps;  // empty where each run reads it from the cache, as programs do
-    std::vector<std::shared_ptr<PlanEvaluation>> evaluations;  // empty where plans are not flown in other worlds
-    const auto plans_need_map = [&](Problem problem) {
-        return !tasks.empty() &&
-               std::any_of(plan.planners.begin(), plan.planners.end(), [&problem](const PlannerSetup& planner) {
-                   problem.planner.variant = planner.variant;
-                   return needs_map(problem, false);
-               });
-    };
-    for (std::size_t p = 0; p < read.problems.size(); ++p) {
-        Problem problem = read.problems[p];
-        const Problem& judging = read.evaluated_in.empty() ? problem : read.evaluated_in.at(p);
-        const bool is_evaluated = !tasks.empty() && plan.evaluation_worlds > 0 && judging.uncertainty.has_value();
-        problem.planner.time_limit_s = plan.time_limit_s;
-        problem.planner.max_iterations = read.campaign.max_iterations;
-        problem.planner.check_execution = problem.planner.check_execution && read.campaign.check_execution;
-        problem.planner.certify = problem.planner.certify && read.campaign.certify;
-        const auto on_map_progress = [&](double share) {
-            if (options.on_map_progress) {
-                options.on_map_progress(problem.name, share);
-            }
-        };
-        auto map =
-            (plans_need_map(problem) || is_evaluated) && problem.aero.enabled && !options.stop.stop_requested()
-                ? make_flight_model(problem)->make_whole_map(problem.bounds, jobs, on_map_progress, options.map_cache)
-                : nullptr;
-        const auto evaluation = is_evaluated && !options.stop.stop_requested()
-                                    ? std::make_shared<PlanEvaluation>(judging, plan.evaluation_worlds, map)
-                                    : nullptr;
-        if (map && is_in_cache(problem, options.map_cache)) {
-            map.reset();
-        }
-        for (const CostFunction& objective : objectives_of(read.campaign, problem)) {
-            problem.planner.objective = objective;
-            problems.push_back(problem);
-            maps.push_back(map);
-            evaluations.push_back(evaluation);
-        }
-    }
-
+    const auto experiments =
+        tasks.empty() ? std::vector<std::unique_ptr<CampaignExperiment>>() : all_experiments(read, plan, options, jobs);
     std::mutex writing;
     std::atomic<std::size_t> out_of_memory = 0;
     const auto do_task = [&](std::size_t i) {
@@ -342,14 +244,8 @@ CampaignProgress run_campaign(const ReadCampaign& read, const CampaignRunOptions
             return;
         }
         const Task& task = tasks[i];
-        SolveOptions how;
-        how.stop = options.stop;
-        how.stop_at_first_solution = plan.stop_at_first_solution;
-        how.map = maps[task.experiment];
-        how.map_cache = options.map_cache;
         try {
-            Run run = attempt(problems[task.experiment], plan.planners[task.planner], task.seed, how,
-                              evaluations[task.experiment].get());
+            Run run = experiments[task.experiment]->attempt(plan.planners[task.planner], task.seed);
             run.experiment = task.experiment;
             run.planner = task.planner;
             run.made_on = RunMachine{this_machine(), system_load()};

@@ -8,7 +8,6 @@
 
 #include "downwash/bench/campaign_data.hpp"
 #include "downwash/bench/campaign_shards.hpp"
-#include "downwash/planner/solve.hpp"
 #include "downwash/problems/campaign_reader.hpp"
 
 namespace downwash::bench {

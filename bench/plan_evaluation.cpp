@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/simulation/space_world_parameters.hpp"
 #include "downwash/simulation/world_parameters.hpp"
 
 namespace downwash::bench {
@@ -14,6 +15,21 @@ World world_of(const WorldParameter& parameter, const Uncertainty& uncertainty, 
     World world;
     parameter.put(world, uncertainty, robot, at);
     return world;
+}
+
+/// @param fails whether the flight in a world failed: those drawn, then two of each parameter
+template <class Fails>
+WorldFigures counted(std::uint64_t worlds, const std::vector<std::string>& parameters, const Fails& fails) {
+    WorldFigures figures;
+    figures.worlds = worlds;
+    for (std::size_t i = 0; i < worlds; ++i) {
+        figures.failures += fails(i) ? 1 : 0;
+    }
+    for (std::size_t i = 0; i < parameters.size(); ++i) {
+        const std::size_t low = worlds + 2 * i;
+        figures.alone.push_back({parameters[i], fails(low), fails(low + 1)});
+    }
+    return figures;
 }
 
 }  // namespace
@@ -58,17 +74,41 @@ WorldFigures PlanEvaluation::evaluate(const Plan& plan) {
     std::call_once(has_starts_, [&] { starts_ = flights->starts_in(worlds_); });
     const std::vector<WorldFlight> flown = flights->fly_from(starts_, plan, flights->goals().size(), worlds_);
     give_back(std::move(flights));
-    const auto fails = [&](std::size_t world) { return flown[world].rejection != Rejection::none; };
-    WorldFigures figures;
-    figures.worlds = world_count_;
-    for (std::size_t i = 0; i < world_count_; ++i) {
-        figures.failures += fails(i) ? 1 : 0;
+    return counted(world_count_, parameters_,
+                   [&](std::size_t world) { return flown[world].rejection != Rejection::none; });
+}
+
+SpacePlanEvaluation::SpacePlanEvaluation(SpaceProblem problem, std::uint64_t worlds)
+    : model_(std::move(problem)), world_count_(worlds) {
+    const SpaceRobot& robot = model_.problem().robot;
+    const Uncertainty& uncertainty = model_.problem().uncertainty.value();
+    for (std::uint64_t i = 1; i <= worlds; ++i) {
+        worlds_.push_back(draw_space_world(uncertainty, robot, evaluation_seed, i));
     }
-    for (std::size_t i = 0; i < parameters_.size(); ++i) {
-        const std::size_t low = world_count_ + 2 * i;
-        figures.alone.push_back({parameters_[i], fails(low), fails(low + 1)});
+    for (const SpaceWorldParameter* parameter : space_world_parameters_of(robot)) {
+        if ((uncertainty.*parameter->spread).form != downwash::Spread::Form::exact) {
+            parameters_.push_back(parameter->name);
+            for (const double at : {low_quantile, high_quantile}) {
+                parameter->put(worlds_.emplace_back(), uncertainty, robot, at);
+            }
+        }
     }
-    return figures;
+}
+
+std::optional<WorldFigures> SpacePlanEvaluation::evaluate(const SpacePlan& plan, const std::stop_token& stop) const {
+    std::vector<bool> fails;
+    try {
+        for (const SpaceWorld& world : worlds_) {
+            SpaceExecutionSettings settings;
+            settings.aero = model_.problem().aero.enabled;
+            settings.world = world;
+            settings.is_over = [&stop] { return stop.stop_requested(); };
+            fails.push_back(model_.execute(plan, settings).outcome != Outcome::ok);
+        }
+    } catch (const WorkStopped&) {
+        return std::nullopt;
+    }
+    return counted(world_count_, parameters_, [&](std::size_t world) { return fails[world]; });
 }
 
 }  // namespace downwash::bench

@@ -5,10 +5,13 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
+#include <string>
 #include <vector>
 
 #include "downwash/bench/campaign_data.hpp"
 #include "downwash/planner/world_flights.hpp"
+#include "downwash/problems/space_problem_model.hpp"
 
 namespace downwash::bench {
 
@@ -45,6 +48,22 @@ class PlanEvaluation {
 
     std::mutex free_mutex_;
     std::vector<std::unique_ptr<WorldFlights>> free_;
+};
+
+/// The same for plans of a problem in space, with direct aerodynamics.
+class SpacePlanEvaluation {
+ public:
+    /// @param problem has an uncertainty   @param worlds how many: indices 1 to `worlds` of evaluation_seed
+    SpacePlanEvaluation(SpaceProblem problem, std::uint64_t worlds);
+
+    /// @param plan through all goals of the problem   @return nothing if it was stopped
+    [[nodiscard]] std::optional<WorldFigures> evaluate(const SpacePlan& plan, const std::stop_token& stop) const;
+
+ private:
+    SpaceProblemModel model_;
+    std::uint64_t world_count_;
+    std::vector<std::string> parameters_;  ///< parameters that are not exact
+    std::vector<SpaceWorld> worlds_;       ///< those drawn; then each parameter at its low and its high quantile
 };
 
 }  // namespace downwash::bench

@@ -106,17 +106,18 @@ std::vector<KeyError> campaign_errors(const Campaign& c) {
 
 /// Reads the problems; two of one name could not be told apart in results.
 /// @param located collects errors that have their place in a problem's file
-std::vector<KeyError> read_problems(const Campaign& campaign, std::vector<Problem>& problems,
+std::vector<KeyError> read_problems(const Campaign& campaign, std::vector<AnyProblem>& problems,
                                     std::vector<LocatedError>& located,
                                     const std::function<void(const LocatedError&)>& on_outdated,
-                                    const std::function<void(const LocatedError&)>& on_warning) {
+                                    const std::function<void(const LocatedError&)>& on_warning,
+                                    const FurtherSpaceErrors& further_errors) {
     std::vector<KeyError> errors;
     for (const std::string& path : campaign.problems) {
         try {
-            Problem problem = read_problem(path, {}, on_outdated, on_warning);
-            if (std::any_of(problems.begin(), problems.end(),
-                            [&](const Problem& other) { return other.name == problem.name; })) {
-                errors.push_back({"problems", "name '" + path + "', which has the name of another, " + problem.name +
+            AnyProblem problem = read_any_problem(path, on_outdated, on_warning, further_errors);
+            const std::string& name = problem_name(problem);
+            if (std::ranges::any_of(problems, [&](const AnyProblem& other) { return problem_name(other) == name; })) {
+                errors.push_back({"problems", "name '" + path + "', which has the name of another, " + name +
                                                   ": expected every problem once, with a name of its own"});
             }
             problems.push_back(std::move(problem));
@@ -131,7 +132,8 @@ std::vector<KeyError> read_problems(const Campaign& campaign, std::vector<Proble
 
 ReadCampaign read_campaign(const std::filesystem::path& file,
                            const std::function<void(const LocatedError&)>& on_outdated,
-                           const std::function<void(const LocatedError&)>& on_warning) {
+                           const std::function<void(const LocatedError&)>& on_warning,
+                           const FurtherSpaceErrors& further_errors) {
     problems::TreeReader<Campaign> reader(campaign_parameters());
     reader.read(file);
     ReadCampaign read{reader.model(), {}};
@@ -144,7 +146,8 @@ ReadCampaign read_campaign(const std::filesystem::path& file,
     };
     if (reader.errors().empty()) {
         reader.add(campaign_errors(read.campaign));
-        reader.add(read_problems(read.campaign, read.problems, in_problems, on_outdated, on_warning_once));
+        reader.add(
+            read_problems(read.campaign, read.problems, in_problems, on_outdated, on_warning_once, further_errors));
     }
     std::vector<LocatedError> errors = reader.errors();
     errors.insert(errors.end(), in_problems.begin(), in_problems.end());
@@ -153,8 +156,8 @@ ReadCampaign read_campaign(const std::filesystem::path& file,
     }
     if (read.campaign.as_believed) {
         read.evaluated_in = read.problems;
-        for (Problem& problem : read.problems) {
-            problem.uncertainty.reset();
+        for (AnyProblem& problem : read.problems) {
+            uncertainty_of(problem).reset();
         }
     }
     return read;

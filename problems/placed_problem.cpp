@@ -12,6 +12,8 @@
 #include "downwash/problems/problem_check.hpp"
 #include "downwash/problems/problem_parameters.hpp"
 #include "downwash/problems/problem_writer.hpp"
+#include "downwash/problems/space_problem_parameters.hpp"
+#include "downwash/problems/space_problem_writer.hpp"
 #include "downwash/problems/tree_reader.hpp"
 #include "downwash/problems/value_reader.hpp"
 #include "downwash/problems/yaml_document.hpp"
@@ -46,10 +48,10 @@ std::string without_indices(std::string_view key) {
 }
 
 /// Why a problem has no value of that key.
-std::string why_absent(const std::string& key) {
+template <class Model>
+std::string why_absent(const ParameterTable<Model>& table, const std::string& key) {
     const std::string path = without_indices(key);
-    const ParameterTable<Problem>& table = problem_parameters();
-    if (const Parameter<Problem>* known = table.find(path)) {
+    if (const Parameter<Model>* known = table.find(path)) {
         if (!known->get) {
             return "is a group of keys, which has no value of its own";
         }
@@ -57,7 +59,7 @@ std::string why_absent(const std::string& key) {
                (known->condition.empty() ? ": its group is not there" : ": it has a meaning only " + known->condition);
     }
     std::vector<std::string_view> valid;
-    for (const Parameter<Problem>* child : table.children(parent_path(path))) {
+    for (const Parameter<Model>* child : table.children(parent_path(path))) {
         valid.push_back(last_name(child->path));
     }
     const std::string remedy =
@@ -76,18 +78,18 @@ problems::YamlNode::Pointer node_of(const std::string& yaml) {
 }
 
 /// Sets one value. @throws InputError
-void set_value(Problem& problem, const KeyChange& change) {
-    const Parameter<Problem>* row = nullptr;
+template <class Model>
+void set_value(const ParameterTable<Model>& table, Model& problem, const KeyChange& change) {
+    const Parameter<Model>* row = nullptr;
     std::size_t index = 0;
-    for_each_value(problem_parameters(), problem,
-                   [&](const Parameter<Problem>& parameter, const std::string& key, std::size_t at) {
-                       if (key == change.key) {
-                           row = &parameter;
-                           index = at;
-                       }
-                   });
+    for_each_value(table, problem, [&](const Parameter<Model>& parameter, const std::string& key, std::size_t at) {
+        if (key == change.key) {
+            row = &parameter;
+            index = at;
+        }
+    });
     if (row == nullptr) {
-        throw InputError({{change.key, why_absent(change.key)}});
+        throw InputError({{change.key, why_absent(table, change.key)}});
     }
     const ParameterInfo& known = *row;
     ParameterInfo info = known;
@@ -97,6 +99,37 @@ void set_value(Problem& problem, const KeyChange& change) {
     } catch (const problems::YamlError& error) {
         throw InputError({{change.key, error.what()}});
     }
+}
+
+/// Sets all of them. @throws InputError with every change that is none
+template <class Model>
+Model with_changes(const ParameterTable<Model>& table, Model problem, std::span<const KeyChange> changes) {
+    std::vector<KeyError> errors;
+    for (const KeyChange& change : changes) {
+        try {
+            set_value(table, problem, change);
+        } catch (const InputError& error) {
+            append(errors, error.errors());
+        }
+    }
+    throw_if_any(std::move(errors));
+    return problem;
+}
+
+using SpaceTreeReader = problems::TreeReader<SpaceProblem>;
+
+PlacedSpaceProblem placed_problem(const std::shared_ptr<SpaceTreeReader>& reader) {
+    if (!reader->is_full()) {
+        reader->add(further_space_problem_errors(reader->model(), reader->wrong_keys()));
+    }
+    if (auto errors = reader->errors(); !errors.empty()) {
+        throw ProblemFileError(std::move(errors));
+    }
+    PlacedSpaceProblem problem{
+        std::make_shared<const SpaceProblemModel>(reader->model()), reader->outdated_keys(), {}, {}};
+    problem.placed = [reader](const std::vector<KeyError>& remarks) { return reader->placed(remarks); };
+    problem.warnings = problem.placed(space_problem_warnings(reader->model()));
+    return problem;
 }
 
 using Json = nlohmann::ordered_json;
@@ -165,16 +198,7 @@ Problem parse_values(const std::string& text, const std::filesystem::path& file)
 }
 
 PlacedProblem changed_problem(const PlacedProblem& before, std::span<const KeyChange> changes) {
-    Problem problem = before.plannable.problem;
-    std::vector<KeyError> errors;
-    for (const KeyChange& change : changes) {
-        try {
-            set_value(problem, change);
-        } catch (const InputError& error) {
-            append(errors, error.errors());
-        }
-    }
-    throw_if_any(std::move(errors));
+    const Problem problem = with_changes(problem_parameters(), before.plannable.problem, changes);
     const ProblemCheck check(problem);
     if (const auto found = further_errors(check, {}); !found.empty()) {
         throw ProblemFileError(before.placed(found));
@@ -182,7 +206,38 @@ PlacedProblem changed_problem(const PlacedProblem& before, std::span<const KeyCh
     return {{problem, model_of(check)}, {}, before.placed(warnings_of(check)), before.placed};
 }
 
+PlacedSpaceProblem read_placed_space_problem(const std::filesystem::path& file) {
+    auto reader = std::make_shared<SpaceTreeReader>(space_problem_parameters());
+    reader->read(file);
+    return placed_problem(reader);
+}
+
+PlacedSpaceProblem parse_space_problem(const std::string& text, const std::filesystem::path& file,
+                                       bool leaves_out_inapplicable) {
+    auto reader = std::make_shared<SpaceTreeReader>(space_problem_parameters());
+    if (leaves_out_inapplicable) {
+        reader->leave_out_inapplicable();
+    }
+    reader->read_text(text, file);
+    return placed_problem(reader);
+}
+
+PlacedSpaceProblem changed_problem(const PlacedSpaceProblem& before, std::span<const KeyChange> changes) {
+    const SpaceProblem problem = with_changes(space_problem_parameters(), before.model->problem(), changes);
+    if (const auto found = further_space_problem_errors(problem, {}); !found.empty()) {
+        throw ProblemFileError(before.placed(found));
+    }
+    return {std::make_shared<const SpaceProblemModel>(problem),
+            {},
+            before.placed(space_problem_warnings(problem)),
+            before.placed};
+}
+
 std::string effective_json(const Problem& problem, const std::filesystem::path& folder) {
+    return json_of(*problems::parse_yaml(effective_yaml(problem, folder))).dump();
+}
+
+std::string effective_json(const SpaceProblem& problem, const std::filesystem::path& folder) {
     return json_of(*problems::parse_yaml(effective_yaml(problem, folder))).dump();
 }
 

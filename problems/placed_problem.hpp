@@ -2,12 +2,14 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/problems/problem_reader.hpp"
+#include "downwash/problems/space_problem_model.hpp"
 
 namespace downwash {
 
@@ -17,6 +19,15 @@ struct PlacedProblem {
     std::vector<LocatedError> outdated;  ///< keys that were read under a former name
     std::vector<LocatedError> warnings;  ///< what problem_warnings() finds
     /// Gives remarks on keys the place of the key, or of the nearest key around it, in what was read.
+    std::function<std::vector<LocatedError>(const std::vector<KeyError>&)> placed;
+};
+
+/// A problem in space together with the places of its keys.
+struct PlacedSpaceProblem {
+    std::shared_ptr<const SpaceProblemModel> model;  ///< of the problem
+    std::vector<LocatedError> outdated;              ///< keys that were read under a former name
+    std::vector<LocatedError> warnings;              ///< what space_problem_warnings() finds
+    /// As of PlacedProblem.
     std::function<std::vector<LocatedError>(const std::vector<KeyError>&)> placed;
 };
 
@@ -30,6 +41,14 @@ struct PlacedProblem {
 /// @throws ProblemFileError as read_problem()
 [[nodiscard]] DOWNWASH_EXPORT PlacedProblem parse_problem(const std::string& text, const std::filesystem::path& file,
                                                           bool leaves_out_inapplicable = false);
+
+/// Reads the file of a problem in space; see read_space_problem(). @throws ProblemFileError
+[[nodiscard]] DOWNWASH_EXPORT PlacedSpaceProblem read_placed_space_problem(const std::filesystem::path& file);
+
+/// Reads a problem in space from the text of a file: see parse_problem(). @throws ProblemFileError
+[[nodiscard]] DOWNWASH_EXPORT PlacedSpaceProblem parse_space_problem(const std::string& text,
+                                                                     const std::filesystem::path& file,
+                                                                     bool leaves_out_inapplicable = false);
 
 /// Reads the values in the text of a problem file without checking the problem as a whole, for programs that take parts
 /// of it, such as obstacles and a goal, over into another problem.
@@ -48,7 +67,13 @@ struct KeyChange {
 [[nodiscard]] DOWNWASH_EXPORT PlacedProblem changed_problem(const PlacedProblem& before,
                                                             std::span<const KeyChange> changes);
 
+/// The same of a problem in space.
+[[nodiscard]] DOWNWASH_EXPORT PlacedSpaceProblem changed_problem(const PlacedSpaceProblem& before,
+                                                                 std::span<const KeyChange> changes);
+
 /// The document of effective_yaml() as JSON.
 [[nodiscard]] DOWNWASH_EXPORT std::string effective_json(const Problem& problem, const std::filesystem::path& folder);
+[[nodiscard]] DOWNWASH_EXPORT std::string effective_json(const SpaceProblem& problem,
+                                                         const std::filesystem::path& folder);
 
 }  // namespace downwash

@@ -15,15 +15,26 @@ namespace {
 
 using SpaceTreeReader = problems::TreeReader<SpaceProblem>;
 
-/// The document in a file; nullptr if there is none.
-problems::YamlNode::Pointer document_in(const std::filesystem::path& file) {
+/// The document in a text; nullptr if there is none.
+problems::YamlNode::Pointer document_of(const std::string& text) {
     try {
-        return problems::parse_yaml(read_file(file, problems::largest_document + 1));
-    } catch (const FileError&) {
-        return nullptr;
+        return problems::parse_yaml(text);
     } catch (const problems::YamlError&) {
         return nullptr;
     }
+}
+
+/// The document in a file; nullptr if there is none.
+problems::YamlNode::Pointer document_in(const std::filesystem::path& file) {
+    try {
+        return document_of(read_file(file, problems::largest_document + 1));
+    } catch (const FileError&) {
+        return nullptr;
+    }
+}
+
+bool is_space_problem(const problems::YamlNode::Pointer& document) {
+    return document != nullptr && problems::family_keys_of_problem(*document).space.has_value();
 }
 
 void throw_errors(const SpaceTreeReader& reader) {
@@ -46,8 +57,11 @@ void tell(SpaceTreeReader& reader, const std::vector<KeyError>& warnings,
 }  // namespace
 
 bool is_space_problem_file(const std::filesystem::path& file) {
-    const auto document = document_in(file);
-    return document != nullptr && problems::family_keys_of_problem(*document).space.has_value();
+    return is_space_problem(document_in(file));
+}
+
+bool is_space_problem_text(const std::string& text) {
+    return is_space_problem(document_of(text));
 }
 
 bool is_space_robot_file(const std::filesystem::path& file) {

@@ -13,6 +13,9 @@ namespace downwash {
 /// Whether the file of a problem is one in space: its bounds have y_m. A file that cannot be read is not.
 [[nodiscard]] DOWNWASH_EXPORT bool is_space_problem_file(const std::filesystem::path& file);
 
+/// The same for the text of a file.
+[[nodiscard]] DOWNWASH_EXPORT bool is_space_problem_text(const std::string& text);
+
 /// Whether the file of a robot is one in space: it has keys that only such robots have, as multirotor.inertia_kg_m2. A
 /// file that cannot be read is not.
 [[nodiscard]] DOWNWASH_EXPORT bool is_space_robot_file(const std::filesystem::path& file);

@@ -252,9 +252,7 @@ RunRecord read_run(const fs::path& folder) {
     RunRecord run;
     const RunClaims claims = read_head(folder, run, [](const fs::path& file) {
         if (is_space_problem_file(file)) {
-            report(file,
-                   "this is a run in space, which pictures and exports do not show yet: `downwash report` makes its "
-                   "page, and its trajectory.csv holds the flight, with the columns that docs/space_files.md lists");
+            report(file, "this is a run in space, and one in a vertical plane is expected");
         }
         return read_problem(file);
     });
@@ -267,7 +265,8 @@ RunRecord read_run(const fs::path& folder) {
     const fs::path tree = folder / "tree.csv";
     if (std::error_code ignored; fs::exists(tree, ignored)) {
         const std::string tree_text = text_of(tree);
-        run.tree = read_number_table(tree_text, tree.string(), tree_table({}, run.problem.axes()).names);
+        run.tree = read_number_table(tree_text, tree.string(),
+                                     tree_table(std::span<const TreeNode>(), run.problem.axes()).names);
         check_tree(tree, run.tree);
         check_file(tree, tree_text, claims.files);
     }
@@ -313,6 +312,10 @@ SpaceRunRecord read_space_run(const fs::path& folder) {
     }
     run.flight = read_flight(folder, flight_columns(run.problem.robot), claims);
     return run;
+}
+
+bool is_space_run(const fs::path& folder) {
+    return is_space_problem_file(folder / "effective.yaml");
 }
 
 ProblemReference problem_of_solution(const fs::path& file) {

@@ -75,6 +75,9 @@ struct SpaceRunRecord {
 /// Reads what `execute` left in a folder for a problem in space: see read_run(). @throws as read_run()
 [[nodiscard]] DOWNWASH_EXPORT SpaceRunRecord read_space_run(const std::filesystem::path& folder);
 
+/// Whether a folder holds a run in space: its effective.yaml is a problem in space. False where there is none.
+[[nodiscard]] DOWNWASH_EXPORT bool is_space_run(const std::filesystem::path& folder);
+
 /// Which problem a solution.json is of, as it says. What it does not say is empty.
 /// @throws InputError if there is no such file or it is not what they write
 [[nodiscard]] DOWNWASH_EXPORT ProblemReference problem_of_solution(const std::filesystem::path& file);

@@ -41,6 +41,10 @@ struct SpaceSolution {
     std::optional<Replanned> replanned;                      ///< empty: the plan begins on its own
 };
 
+/// What a search has found for a problem, with the settings of the problem.
+[[nodiscard]] DOWNWASH_EXPORT SpaceSolution solution_of(const SpaceProblem& problem,
+                                                        std::shared_ptr<const SpaceSearchResult> search, int threads);
+
 /// How a solution names its problem; see ProblemReference.
 struct SpaceProblemReference {
     std::string name, file, sha256;

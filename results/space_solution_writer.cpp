@@ -79,6 +79,25 @@ Json execution_json(const SpaceSolution& solution) {
 
 }  // namespace
 
+SpaceSolution solution_of(const SpaceProblem& problem, std::shared_ptr<const SpaceSearchResult> search, int threads) {
+    SpaceSolution solution;
+    solution.status = search->status;
+    solution.interrupted = search->interrupted;
+    solution.variant = problem.planner.variant;
+    solution.algorithm = problem.planner.algorithm;
+    solution.objective = problem.planner.objective;
+    solution.seed = problem.planner.seed;
+    solution.threads = threads;
+    solution.joints = problem.robot.joints();
+    solution.plan = search->plan;
+    solution.execution = search->execution;
+    solution.aero = problem.aero.enabled;
+    solution.order = search->order;
+    solution.safe_stops = search->safe_stops;
+    solution.search = std::move(search);
+    return solution;
+}
+
 double worst_goal_error_m(const SpaceFlight& flight) noexcept {
     double worst_m = 0;
     for (const SpaceGoalVisit& visit : flight.goals) {

@@ -25,6 +25,25 @@ std::string text_of(std::span<const Node> tree, std::span<const Axis> axes) {
     return text;
 }
 
+template <class Node>
+NumberTable table_of(std::span<const Node> tree, std::span<const Axis> axes) {
+    NumberTable table;
+    for (const Axis& axis : axes) {
+        table.names.emplace_back(axis.position);
+    }
+    table.names.emplace_back("parent");
+    table.columns.resize(table.names.size());
+    for (const Node& node : tree) {
+        std::vector<double> row;
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            row.push_back(node.at[i]);
+        }
+        row.push_back(node.parent == Node::no_parent ? NAN : static_cast<double>(node.parent));
+        table.add_row(row);
+    }
+    return table;
+}
+
 }  // namespace
 
 std::string tree_csv(std::span<const TreeNode> tree, std::span<const Axis> axes) {
@@ -36,19 +55,11 @@ std::string tree_csv(std::span<const SpaceTreeNode> tree, std::span<const Axis> 
 }
 
 NumberTable tree_table(std::span<const TreeNode> tree, std::span<const Axis> axes) {
-    NumberTable table;
-    for (const Axis& axis : axes) {
-        table.names.emplace_back(axis.position);
-    }
-    table.names.emplace_back("parent");
-    table.columns.resize(table.names.size());
-    for (const TreeNode& node : tree) {
-        const auto end = node.at.coordinate.begin() + axes.size();
-        std::vector<double> row(node.at.coordinate.begin(), end);
-        row.push_back(node.parent == TreeNode::no_parent ? NAN : static_cast<double>(node.parent));
-        table.add_row(row);
-    }
-    return table;
+    return table_of(tree, axes);
+}
+
+NumberTable tree_table(std::span<const SpaceTreeNode> tree, std::span<const Axis> axes) {
+    return table_of(tree, axes);
 }
 
 }  // namespace downwash

@@ -17,5 +17,6 @@ namespace downwash {
 
 /// The numbers of a tree as a table; the parent of a root is NaN.
 [[nodiscard]] DOWNWASH_EXPORT NumberTable tree_table(std::span<const TreeNode> tree, std::span<const Axis> axes);
+[[nodiscard]] DOWNWASH_EXPORT NumberTable tree_table(std::span<const SpaceTreeNode> tree, std::span<const Axis> axes);
 
 }  // namespace downwash

@@ -82,6 +82,15 @@ class SurfaceBuilder {
             vertex_m = along(cylinder.axis, vertex_m);
         }
     }
+    void operator()(const Capsule& capsule) {
+        const Vector3 way_m = capsule.to_m - capsule.from_m;
+        const double length_m = std::hypot(way_m[0], way_m[1], way_m[2]);
+        add_sphere(capsule.radius_m);
+        for (Vector3& vertex_m : surface.vertices_m) {
+            vertex_m[2] += vertex_m[2] < 0 ? -length_m / 2 : length_m / 2;
+            vertex_m = 0.5 * (capsule.from_m + capsule.to_m) + (length_m > 0 ? along(way_m, vertex_m) : vertex_m);
+        }
+    }
     void operator()(const Mesh& mesh) {
         for (const Vector3& vertex : mesh.surface->vertices_m) {
             surface.vertices_m.push_back(local_m(mesh, vertex));
@@ -117,6 +126,15 @@ TriangleMesh surface_of(const Obstacle& obstacle) {
     const Matrix3 rotation = rotation_of(obstacle.rpy_rad);
     for (Vector3& vertex_m : builder.surface.vertices_m) {
         vertex_m = obstacle.center_world_m + rotation * vertex_m;
+    }
+    return builder.surface;
+}
+
+TriangleMesh surface_of(const SpaceBodyShape& body) {
+    SurfaceBuilder builder;
+    std::visit(builder, body.shape);
+    for (Vector3& vertex_m : builder.surface.vertices_m) {
+        vertex_m = body.center_m + vertex_m;
     }
     return builder.surface;
 }

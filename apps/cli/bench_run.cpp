@@ -14,6 +14,7 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/planner/space_solve.hpp"
 #include "downwash/report/campaign_page.hpp"
 #include "downwash/report/run_page.hpp"
 
@@ -56,7 +57,7 @@ ExitCode run_campaign(const BenchRunArguments& given) {
     Interruption interruption({given.wall_limit_s, {}});
     interruption.expect_results();
     ReadCampaign read = read_campaign(given.campaign, given.is_quiet ? nullptr : print_outdated,
-                                      given.is_quiet ? nullptr : print_warning);
+                                      given.is_quiet ? nullptr : print_warning, space_planning_errors);
     if (given.jobs) {
         read.campaign.jobs = *given.jobs;
     }

@@ -14,6 +14,7 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/program.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/planner/space_solve.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -34,7 +35,7 @@ fs::path plain_path(const fs::path& given, const std::string& what) {
 }
 
 bench::ShardScripts scripts_of(const BenchScriptArguments& given) {
-    const ReadCampaign read = read_campaign(given.campaign, print_outdated, print_warning);
+    const ReadCampaign read = read_campaign(given.campaign, print_outdated, print_warning, space_planning_errors);
     const fs::path pilot = given.pilot ? plain_path(*given.pilot, "--pilot") : fs::path();
     static_cast<void>(bench::plan_of(read, bench::ShardRequest{1, given.shards, pilot}));  // it can be dealt out
     bench::ShardScripts scripts;

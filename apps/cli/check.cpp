@@ -19,6 +19,7 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/planner/space_solve.hpp"
 #include "downwash/problems/campaign_reader.hpp"
 #include "downwash/problems/input_facts.hpp"
 #include "downwash/problems/key_reference.hpp"
@@ -133,7 +134,7 @@ Findings findings_in(const std::string& path) {
         } else if (kind == "robot") {
             found.robot = read_robot(path, on_warning);
         } else if (kind == "campaign") {
-            static_cast<void>(read_campaign(path, on_warning, on_warning));
+            static_cast<void>(read_campaign(path, on_warning, on_warning, space_planning_errors));
         } else if (kind == "data") {
             found.data = read_data_file(path);
             for (const std::string& remark : data_remarks(*found.data)) {

@@ -22,8 +22,9 @@ ExportSettings settings_of(const ExportArguments& given) {
     ExportSettings settings;
     settings.rate_hz = given.rate_hz;
     if (!given.origin.empty()) {
-        settings.origin = {given.origin[0], given.origin[1], given.origin[2], given.bearing_deg.value_or(0)};
+        settings.origin = {given.origin[0], given.origin[1], given.origin[2]};
     }
+    settings.bearing_deg = given.bearing_deg.value_or(0);
     const auto end = std::find(mission_ends.begin(), mission_ends.end(), given.end);
     if (end == mission_ends.end()) {
         reject_unknown("--end", given.end, {mission_ends.begin(), mission_ends.end()});
@@ -41,15 +42,29 @@ void reject_useless_options(const ExportArguments& given, const ExportFormat& fo
     reject_if(given.rate_hz && !format.has_rate, "--rate", "has no set-points");
     reject_if(!given.origin.empty() && !format.has_origin, "--origin", "stays in the frame of the problem");
     reject_if(given.end != "hover" && !format.has_origin, "--end", "is no mission");
-    reject_if(given.bearing_deg && given.origin.empty(), "--bearing", "needs --origin with it");
+    reject_if(given.bearing_deg && !format.has_bearing, "--bearing", "stays in the frame of the problem");
 }
 
 /// A plan for others to fly must have flown well here.
-void require_good_flight(const RunRecord& run) {
+/// @param run a RunRecord or SpaceRunRecord
+template <class Record>
+void require_good_flight(const Record& run) {
     if (run.plan && (run.status != "solved" || run.outcome != "ok")) {
         throw UsageError(
             "this plan is not fit to be flown: its status is '{}' and its flight ended '{}'; --anyway writes it",
             excerpt(run.status), excerpt(run.outcome));
+    }
+}
+
+template <class Record>
+void write_export(const Record& run, const ExportFormat& format, const fs::path& file, const ExportArguments& given) {
+    if (format.is_to_be_flown && !given.anyway) {
+        require_good_flight(run);
+    }
+    write_made_from(source_of(run_folder(given.folder), run.solution_text), file.parent_path(),
+                    {{file.filename().string(), exported(run, format, settings_of(given))}});
+    for (const std::string& warning : export_warnings(run, format)) {
+        print_error(fmt::format("warning: {}\n", warning));
     }
 }
 
@@ -58,16 +73,12 @@ void require_good_flight(const RunRecord& run) {
 ExitCode export_run(const ExportArguments& given) {
     const ExportFormat& chosen = entry_named(export_formats, given.format, "--format");
     reject_useless_options(given, chosen);
-    const fs::path file =
-        given.out ? fs::path(*given.out) : fs::path(run_folder(given.folder)) / std::string(chosen.file_name);
-    const RunRecord record = read_run(run_folder(given.folder));
-    if (chosen.is_to_be_flown && !given.anyway) {
-        require_good_flight(record);
-    }
-    write_made_from(source_of(run_folder(given.folder), record.solution_text), file.parent_path(),
-                    {{file.filename().string(), exported(record, chosen, settings_of(given))}});
-    for (const std::string& warning : export_warnings(record, chosen)) {
-        print_error(fmt::format("warning: {}\n", warning));
+    const fs::path folder = run_folder(given.folder);
+    const fs::path file = given.out ? fs::path(*given.out) : folder / std::string(chosen.file_name);
+    if (is_space_run(folder)) {
+        write_export(read_space_run(folder), chosen, file, given);
+    } else {
+        write_export(read_run(folder), chosen, file, given);
     }
     fmt::print("{}\n", file.string());
     return ExitCode::done;

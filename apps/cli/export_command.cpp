@@ -34,7 +34,7 @@ void add_export(Command program, Action& action, ExitCode (*run)(const ExportArg
             "in m above mean sea level")
         .values(3);
     command.add_option("--bearing DEG", given.bearing_deg,
-                       "compass direction of the world's x axis, clockwise from north; default 0");
+                       "compass direction of the world's x axis, clockwise from north, for qgc and px4; default 0");
     Option end = command.add_option("--end WHAT", given.end,
                                     "what a mission (qgc) does after the plan: hover; land, straight below; or return, "
                                     "the autopilot's own way home, "

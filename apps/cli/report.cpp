@@ -9,10 +9,10 @@
 #include "downwash/cli/run_report.hpp"
 #include "downwash/cli/usage_error.hpp"
 #include "downwash/problems/problem_model.hpp"
-#include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/report/run_figures.hpp"
 #include "downwash/report/run_page.hpp"
 #include "downwash/report/space_page.hpp"
+#include "downwash/report/space_problem_figure.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -30,11 +30,10 @@ struct ReportArguments {
     [[nodiscard]] bool wants_pictures() const { return as_svg || as_png || as_pdf; }
 };
 
-void write_pictures(const ReportArguments& given, const RunRecord& run) {
-    const auto model = make_flight_model(run.problem);
-    FieldFigure flight = snapshot_figure(run, *model);
-    flight.has_names = !given.no_labels;
-    const std::vector<CurveFigure> plots = time_figures(run);
+/// @param flight figure of the flight   @param solution_text of the run
+template <class Figure>
+void write_pictures(const ReportArguments& given, const std::string& solution_text, const Figure& flight,
+                    const std::vector<CurveFigure>& plots) {
     struct Wanted {
         bool is_wanted;
         PictureFormat format;
@@ -52,10 +51,23 @@ void write_pictures(const ReportArguments& given, const RunRecord& run) {
         }
     }
     const OutputFolder folder(given.out.value_or(run_folder(given.folder)));
-    write_made_from(source_of(run_folder(given.folder), run.solution_text), folder.path(), pictures);
+    write_made_from(source_of(run_folder(given.folder), solution_text), folder.path(), pictures);
     for (const auto& [name, content] : pictures) {
         fmt::print("{}\n", (folder.path() / name).string());
     }
+}
+
+void write_pictures(const ReportArguments& given, const SpaceRunRecord& run) {
+    SpaceFigure flight = space_run_figure(run, Scene(run.problem.obstacles));
+    flight.has_names = !given.no_labels;
+    write_pictures(given, run.solution_text, flight, time_figures(run));
+}
+
+void write_pictures(const ReportArguments& given, const RunRecord& run) {
+    const auto model = make_flight_model(run.problem);
+    FieldFigure flight = snapshot_figure(run, *model);
+    flight.has_names = !given.no_labels;
+    write_pictures(given, run.solution_text, flight, time_figures(run));
 }
 
 void write_page(const fs::path& folder, const fs::path& file, const std::string& solution_text,
@@ -70,13 +82,15 @@ ExitCode run(const ReportArguments& given) {
     if (given.no_labels && !given.wants_pictures()) {
         throw UsageError("--no-labels goes with pictures only: expected --svg, --png or --pdf with it");
     }
-    if (given.wants_pictures()) {
-        write_pictures(given, read_run(run_folder(given.folder)));
+    const fs::path folder = run_folder(given.folder);
+    if (given.wants_pictures() && is_space_run(folder)) {
+        write_pictures(given, read_space_run(folder));
+    } else if (given.wants_pictures()) {
+        write_pictures(given, read_run(folder));
     } else {
         require_pages();
-        const fs::path folder = run_folder(given.folder);
         const fs::path page = given.out ? fs::path(*given.out) : folder / run_page_name;
-        if (is_space_problem_file((folder / "effective.yaml").string())) {
+        if (is_space_run(folder)) {
             const SpaceRunRecord shown = read_space_run(folder);
             write_page(folder, page, shown.solution_text, space_page(shown.problem, shown_run(shown)));
         } else {
@@ -95,7 +109,8 @@ void add_report(Command program, Action& action) {
     auto [command, given] = add_command<ReportArguments>(
         program, action, "report",
         "Show a run as one self-contained HTML page with scene, playback, plots and search; with --svg, --png or "
-        "--pdf, draw pictures for papers instead: the snapshot diagram flight.* and the time plots plots.*",
+        "--pdf, draw pictures for papers instead: the snapshot diagram flight.*, in space in three views, and the time "
+        "plots plots.*",
         run);
     add_run(command, given.folder);
     add_out(command, "FILE|DIR", given.out,

@@ -89,25 +89,6 @@ std::string rows_of(const SpaceProblem& problem, const SpaceSearchResult& search
     return text;
 }
 
-SpaceSolution solution_of(const SpaceProblem& problem, std::shared_ptr<const SpaceSearchResult> search, int threads) {
-    SpaceSolution solution;
-    solution.status = search->status;
-    solution.interrupted = search->interrupted;
-    solution.variant = problem.planner.variant;
-    solution.algorithm = problem.planner.algorithm;
-    solution.objective = problem.planner.objective;
-    solution.seed = problem.planner.seed;
-    solution.threads = threads;
-    solution.joints = problem.robot.joints();
-    solution.plan = search->plan;
-    solution.execution = search->execution;
-    solution.aero = problem.aero.enabled;
-    solution.order = search->order;
-    solution.safe_stops = search->safe_stops;
-    solution.search = std::move(search);
-    return solution;
-}
-
 /// How the plan takes over from an earlier one, if it does.
 std::string takeover_rows_of(const SpaceProblem& problem, const SpaceSolution& solution) {
     if (!solution.replanned) {
@@ -167,9 +148,7 @@ ExitCode search_in_space(SearchInSpace given, Interruption& interruption) {
     }
     const SpaceRunRecord record = given.folder.write(problem, given.problem, given.warnings, solution,
                                                      input_facts(problem, given.model->scene()));
-    if (solution.execution) {
-        write_page(given.folder.path(), record);
-    }
+    write_page(given.folder.path(), record);
     if (given.as_json) {
         fmt::print("{}", record.solution_text);
     } else {

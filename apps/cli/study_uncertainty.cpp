@@ -12,6 +12,7 @@
 #include "downwash/cli/progress.hpp"
 #include "downwash/cli/study_commands.hpp"
 #include "downwash/cli/usage_error.hpp"
+#include "downwash/planner/space_solve.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -39,13 +40,15 @@ bench::StudySettings settings_of(const StudyUncertaintyArguments& given) {
     settings.worlds = given.worlds.value_or(settings.worlds);
     settings.jobs = given.jobs;
     for (const std::string& file : given.problems.empty() ? shipped_problems() : given.problems) {
-        Problem problem = read_problem(file, {}, given.is_quiet ? nullptr : print_outdated);
-        if (!problem.uncertainty) {
+        AnyProblem problem =
+            read_any_problem(file, given.is_quiet ? nullptr : print_outdated, {}, space_planning_errors);
+        const std::string& name = problem_name(problem);
+        if (!uncertainty_of(problem)) {
             throw UsageError("{}: has no uncertainty to study: expected `uncertainty: {{}}` or more in it", file);
         }
-        if (std::any_of(settings.problems.begin(), settings.problems.end(),
-                        [&](const Problem& other) { return other.name == problem.name; })) {
-            throw UsageError("--problem: two problems have the name {}", problem.name);
+        if (std::ranges::any_of(settings.problems,
+                                [&](const AnyProblem& other) { return problem_name(other) == name; })) {
+            throw UsageError("--problem: two problems have the name {}", name);
         }
         settings.problems.push_back(std::move(problem));
     }

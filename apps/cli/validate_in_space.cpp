@@ -108,7 +108,7 @@ ExitCode validate_in_space(const ValidateArguments& given) {
         }
     }
     if (folder) {
-        static_cast<void>(write_findings(*folder, validation, source));
+        write_validation(*folder, validation, problem, source);
     }
     if (given.as_json) {
         print_json(json_of(validation));

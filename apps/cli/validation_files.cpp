@@ -12,7 +12,9 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/run_report.hpp"
 #include "downwash/problems/problem_model.hpp"
+#include "downwash/problems/space_problem_writer.hpp"
 #include "downwash/report/run_page.hpp"
+#include "downwash/report/space_page.hpp"
 #include "downwash/report/validation_page.hpp"
 #include "downwash/results/solution_file.hpp"
 #include "downwash/simulation/world_parameters.hpp"
@@ -101,16 +103,34 @@ ValidationRecord record_of(const Validation& validation, const std::string& find
     return record;
 }
 
-}  // namespace
+/// The run that a plan in space is of, to be shown beside the findings: without a flight unless its folder holds one of
+/// the same problem.
+SpaceRun run_beside(const SpaceProblem& problem, const SourceFile& solution) {
+    const std::filesystem::path folder = solution.path.parent_path();
+    try {
+        if (is_space_run(folder)) {
+            const SpaceRunRecord record = read_space_run(folder);
+            if (problem_sha256(record.problem) == problem_sha256(problem)) {
+                return shown_run(record);
+            }
+        }
+    } catch (const ProblemFileError&) {  // the plan alone is whole
+    } catch (const InputError&) {
+    }
+    return {};
+}
 
+/// Writes validation.json; a page of before goes. @return its text
 std::string write_findings(const OutputFolder& folder, const Validation& validation, const SourceFile& solution) {
-    std::string findings = text_of(json_of(validation));
+    std::string findings = cli::text_of(json_of(validation));
     // The page takes a while and is written when the findings are safe; that of before goes first.
     std::error_code ignored;
     std::filesystem::remove(folder.path() / page_name, ignored);
     write_made_from(solution, folder.path(), {{findings_name, findings}});
     return findings;
 }
+
+}  // namespace
 
 void write_validation(const OutputFolder& folder, const Validation& validation, const judge::PlanJudge& judge,
                       const Plan& plan, const ValidationSource& source) {
@@ -123,6 +143,17 @@ void write_validation(const OutputFolder& folder, const Validation& validation, 
     const ValidationRecord record = record_of(validation, findings, judge, plan, source);
     write_made_from({folder.path() / findings_name, findings}, folder.path(),
                     {{page_name, validation_page(record, problem, *model, source.threads)}});
+}
+
+void write_validation(const OutputFolder& folder, const Validation& validation, const SpaceProblem& problem,
+                      const SourceFile& solution) {
+    const std::string findings = write_findings(folder, validation, solution);
+    if (!has_pages()) {
+        return;
+    }
+    SpaceRun run = run_beside(problem, solution);
+    run.findings = findings;
+    write_made_from({folder.path() / findings_name, findings}, folder.path(), {{page_name, space_page(problem, run)}});
 }
 
 }  // namespace downwash::cli

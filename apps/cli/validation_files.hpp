@@ -8,6 +8,7 @@
 #include "downwash/cli/validation.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/judge/plan_judge.hpp"
+#include "downwash/problems/space_problem.hpp"
 
 namespace downwash::cli {
 
@@ -23,12 +24,13 @@ struct ValidationSource {
     int threads = 1;
 };
 
-/// Writes validation.json; a page of before goes. @return its text
-std::string write_findings(const OutputFolder& folder, const Validation& validation, const SourceFile& solution);
-
 /// Writes validation.json and, if this build contains pages, validation.html. The page plays the flight that was judged
 /// and the worst flights of the worlds, which the judge flies again.
 void write_validation(const OutputFolder& folder, const Validation& validation, const judge::PlanJudge& judge,
                       const Plan& plan, const ValidationSource& source);
+/// The same for a plan in space. The page shows the run that the plan is of with what the judge found; a plan without
+/// a run of the same problem beside it is shown without a flight.
+void write_validation(const OutputFolder& folder, const Validation& validation, const SpaceProblem& problem,
+                      const SourceFile& solution);
 
 }  // namespace downwash::cli

@@ -1,10 +1,35 @@
 #include "downwash/python/columns.hpp"
 
+#include <span>
 #include <string>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/controllers/space_axes.hpp"
 
 namespace downwash::python {
+namespace {
+
+template <class AnyPlan>
+NumberTable table_of(const AnyPlan& plan, std::span<const Axis> axes) {
+    NumberTable table;
+    table.names = {"t_s"};
+    for (const auto name : {&Axis::position, &Axis::velocity, &Axis::acceleration}) {
+        for (const Axis& axis : axes) {
+            table.names.emplace_back(axis.*name);
+        }
+    }
+    table.columns.resize(table.names.size());
+    for (const auto& knot : plan.reference) {
+        std::vector<double> row{static_cast<double>(knot.tick) * plan.tick_s};
+        for (const double* numbers : {knot.point.position, knot.point.velocity, knot.point.acceleration}) {
+            row.insert(row.end(), numbers, numbers + axes.size());
+        }
+        table.add_row(row);
+    }
+    return table;
+}
+
+}  // namespace
 
 py::dict columns_of(NumberTable table) {
     py::dict columns;
@@ -15,22 +40,11 @@ py::dict columns_of(NumberTable table) {
 }
 
 NumberTable knot_table(const Plan& plan) {
-    NumberTable table;
-    table.names = {"t_s"};
-    for (const auto name : {&Axis::position, &Axis::velocity, &Axis::acceleration}) {
-        for (const Axis& axis : plan.axes) {
-            table.names.emplace_back(axis.*name);
-        }
-    }
-    table.columns.resize(table.names.size());
-    for (const ReferenceKnot& knot : plan.reference) {
-        std::vector<double> row{static_cast<double>(knot.tick) * plan.tick_s};
-        for (const double* numbers : {knot.point.position, knot.point.velocity, knot.point.acceleration}) {
-            row.insert(row.end(), numbers, numbers + plan.axes.size());
-        }
-        table.add_row(row);
-    }
-    return table;
+    return table_of(plan, plan.axes);
+}
+
+NumberTable knot_table(const SpacePlan& plan) {
+    return table_of(plan, axes_in_space(plan.joints));
 }
 
 std::size_t count_points(const Points& points, bool may_be_in_world) {

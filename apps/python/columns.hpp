@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "downwash/controllers/plan.hpp"
+#include "downwash/controllers/space_reference.hpp"
 #include "downwash/results/number_table.hpp"
 
 namespace downwash::python {
@@ -29,6 +30,7 @@ py::array_t<T> array_of(std::vector<T> values) {
 
 /// The knots of a plan, named as in solution.json.
 [[nodiscard]] NumberTable knot_table(const Plan& plan);
+[[nodiscard]] NumberTable knot_table(const SpacePlan& plan);
 
 /// Points that a user gives, in C order.
 using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;

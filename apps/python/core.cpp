@@ -22,6 +22,7 @@ PYBIND11_MODULE(_core, module) {
     bind_problem(module);
     bind_solution(module);
     bind_solve(module);
+    bind_space(module);
     bind_planner(module);
     bind_aeromap(module);
     bind_hold(module);

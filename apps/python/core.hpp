@@ -22,6 +22,15 @@ struct CoreProblem {
     [[nodiscard]] const std::shared_ptr<const FlightModel>& model() const noexcept { return placed.plannable.model; }
 };
 
+/// The same in space.
+struct CoreSpaceProblem {
+    PlacedSpaceProblem placed;
+    std::string file;  ///< as the user gave it
+
+    [[nodiscard]] const SpaceProblem& problem() const noexcept { return placed.model->problem(); }
+    [[nodiscard]] const std::shared_ptr<const SpaceProblemModel>& model() const noexcept { return placed.model; }
+};
+
 /// The number of threads that a user asks for; one per processor, 64 at most, where that is 0.
 [[nodiscard]] int thread_count(int asked);
 
@@ -30,6 +39,7 @@ void bind_errors(py::module_& module);
 void bind_problem(py::module_& module);
 void bind_solution(py::module_& module);
 void bind_solve(py::module_& module);
+void bind_space(py::module_& module);
 void bind_planner(py::module_& module);
 void bind_aeromap(py::module_& module);
 void bind_hold(py::module_& module);

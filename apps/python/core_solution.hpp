@@ -7,6 +7,7 @@
 #include "downwash/planner/solve_options.hpp"
 #include "downwash/python/core.hpp"
 #include "downwash/python/interruptible.hpp"
+#include "downwash/results/space_solution_file.hpp"
 
 namespace downwash::python {
 
@@ -15,6 +16,15 @@ struct CoreSolution {
     std::shared_ptr<const CoreProblem> of;
     Solution solution;
 };
+
+/// The same in space.
+struct CoreSpaceSolution {
+    std::shared_ptr<const CoreSpaceProblem> of;
+    SpaceSolution solution;
+};
+
+/// @throws InputError if the plan is of another robot, on other control ticks, or begins elsewhere than the problem
+void require_fit(const SpaceProblem& problem, const SpacePlan& plan);
 
 /// A callback of a user with what a search tells; it may be None. Both outlive the search.
 [[nodiscard]] std::function<void(const Progress&)> telling(Attendance& attendance, const py::object& on_progress);

@@ -8,30 +8,14 @@
 #include <utility>
 
 #include "downwash/base/angles.hpp"
-#include "downwash/base/key_error.hpp"
-#include "downwash/base/text.hpp"
 #include "downwash/report/factor_field.hpp"
 #include "downwash/report/figure_colors.hpp"
+#include "downwash/report/flight_diagrams.hpp"
 #include "downwash/report/obstacle_outline.hpp"
 #include "downwash/report/plane_drawing.hpp"
 
 namespace downwash {
 namespace {
-
-void require_flight(const RunRecord& run) {
-    if (run.flight.rows() < 2) {
-        throw_input_error(run.flight.rows() == 0 ? "this run contains no flight"
-                                                 : "the flight has one row only, too little to draw");
-    }
-}
-
-/// The columns of the flight by name; a RunRecord has all that are used here.
-struct Flight {
-    const NumberTable& table;
-
-    [[nodiscard]] const std::vector<double>& operator[](std::string_view name) const { return *table.find(name); }
-    [[nodiscard]] std::size_t rows() const { return table.rows(); }
-};
 
 Ring way(const std::vector<double>& x_m, const std::vector<double>& z_m) {
     Ring points;
@@ -39,22 +23,6 @@ Ring way(const std::vector<double>& x_m, const std::vector<double>& z_m) {
         points.push_back({x_m[i], z_m[i]});
     }
     return points;
-}
-
-/// Rows at equal intervals of about one vehicle length, the last one included.
-std::vector<std::size_t> snapshot_rows(const Flight& flight, double vehicle_m) {
-    double length_m = 0;
-    for (std::size_t i = 1; i < flight.rows(); ++i) {
-        length_m += std::hypot(flight["x_m"][i] - flight["x_m"][i - 1], flight["z_m"][i] - flight["z_m"][i - 1]);
-    }
-    constexpr double min_count = 5, max_count = 16;
-    const double count = std::clamp(std::round(length_m / (1.3 * vehicle_m)), min_count, max_count);
-    std::vector<std::size_t> rows;
-    const auto last = static_cast<double>(flight.rows() - 1);
-    for (double i = 0; i <= count; ++i) {
-        rows.push_back(static_cast<std::size_t>(std::lround(last * i / count)));
-    }
-    return rows;
 }
 
 /// The path of the reference without the final hover.
@@ -75,7 +43,7 @@ Ring planned_way(const RunRecord& run) {
 }
 
 /// The extent of plan and flight, with a margin.
-Bounds shown_extent(const RunRecord& run, const Flight& flight) {
+Bounds shown_extent(const RunRecord& run, const FlightColumns& flight) {
     const double room_m = 1.2 * run.problem.robot.arm.length_m;
     Bounds extent{HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL};
     const auto include = [&](const std::vector<double>& x_m, const std::vector<double>& z_m) {
@@ -95,55 +63,17 @@ Bounds shown_extent(const RunRecord& run, const Flight& flight) {
     return extent;
 }
 
-std::vector<DiagramPoint> over_time(const Flight& flight, const std::vector<double>& values, double factor = 1) {
-    std::vector<DiagramPoint> points;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        points.push_back({flight["t_s"][i], factor * values[i]});
-    }
-    return points;
-}
-
-CurveFigure diagram(std::string y_label, std::vector<Curve> curves) {
-    CurveFigure figure;
-    figure.x_label = "time [s]";
-    figure.y_label = std::move(y_label);
-    figure.curves = std::move(curves);
-    return figure;
-}
-
-/// One curve per rotor; rotors with equal values share one.
-std::vector<Curve> rotor_curves(const Flight& flight, std::size_t rotors, const std::string& column) {
-    std::vector<Curve> curves;
-    std::vector<std::size_t> shown;
-    for (std::size_t i = 1; i <= rotors; ++i) {
-        const auto& values = flight[fmt::format("rotor_{}_{}", i, column)];
-        bool is_shown = false;
-        for (std::size_t k = 0; k < shown.size() && !is_shown; ++k) {
-            if (flight[fmt::format("rotor_{}_{}", shown[k], column)] == values) {
-                curves[k].name += fmt::format(", {}", i);
-                is_shown = true;
-            }
-        }
-        if (!is_shown) {
-            shown.push_back(i);
-            curves.push_back({fmt::format("rotor {}", i), over_time(flight, values)});
-        }
-    }
-    return curves;
-}
-
 }  // namespace
 
 FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model) {
-    require_flight(run);
-    const Flight flight{run.flight};
+    require_flight(run.flight);
+    const FlightColumns flight{run.flight};
     FieldFigure figure;
     figure.title = run.problem.name;
     const RobotDrawing robot(run.problem.robot);
-    const auto rows = snapshot_rows(flight, robot.width_m());
-    figure.subtitle =
-        fmt::format("{}, every {} s of {} s", name_of(run.problem.planner.variant),
-                    to_text((flight["t_s"][rows[1]] - flight["t_s"][rows[0]]), 3), to_text(flight["t_s"].back(), 4));
+    constexpr double min_count = 5, max_count = 16;
+    const auto rows = snapshot_rows(flight, {"x_m", "z_m"}, robot.width_m(), min_count, max_count);
+    figure.subtitle = fmt::format("{}, {}", name_of(run.problem.planner.variant), interval_text(flight, rows));
     figure.extent = shown_extent(run, flight);
     figure.obstacles = obstacle_outlines(model.effect(0).scene(), run.problem.plane, 0);
     figure.value = factor_field(model.layer(0), model.plane());
@@ -174,31 +104,18 @@ FieldFigure snapshot_figure(const RunRecord& run, const FlightModel& model) {
 }
 
 std::vector<CurveFigure> time_figures(const RunRecord& run) {
-    require_flight(run);
-    const Flight flight{run.flight};
-    std::vector<double> error_m;
-    for (std::size_t i = 0; i < flight.rows(); ++i) {
-        error_m.push_back(std::hypot(flight["x_m"][i] - flight["ref_x_m"][i], flight["z_m"][i] - flight["ref_z_m"][i]));
-    }
-    const std::size_t rotors = run.problem.robot.rotors.positions_m.size();
+    require_flight(run.flight);
+    const FlightColumns flight{run.flight};
     std::vector<CurveFigure> figures;
-    figures.push_back(diagram("tracking error [m]", {{"position", over_time(flight, error_m)}}));
-    figures.push_back(
-        diagram("angle [deg]", {{"pitch, nose down", over_time(flight, flight["pitch_rad"], degrees_per_radian)},
-                                {"arm", over_time(flight, flight["arm_rad"], degrees_per_radian)},
-                                {"arm, reference", over_time(flight, flight["ref_arm_rad"], degrees_per_radian)}}));
-    figures.push_back(diagram("rotor command [N]", rotor_curves(flight, rotors, "cmd_n")));
-    figures.push_back(diagram("aero factor", rotor_curves(flight, rotors, "aero_factor")));
-    if (!std::isnan(flight["clearance_m"].front())) {
-        figures.push_back(diagram("clearance [m]", {{"to obstacles", over_time(flight, flight["clearance_m"])}}));
-        figures.back().level = run.problem.planner.safety_margin_m;
-    }
-    figures.push_back(diagram("power [W]", {{"rotors and arm", over_time(flight, flight["power_w"])}}));
-    for (CurveFigure& figure : figures) {
-        figure.x_range = AxisRange{flight["t_s"].front(), flight["t_s"].back()};
-    }
-    figures.front().title = run.problem.name;
-    figures.front().subtitle = std::string(name_of(run.problem.planner.variant));
+    figures.push_back(time_diagram("tracking error [m]",
+                                   {{"position", over_time(flight, tracking_error_m(flight, {"x_m", "z_m"}))}}));
+    figures.push_back(time_diagram("angle [deg]",
+                                   {{"pitch, nose down", over_time(flight, flight["pitch_rad"], degrees_per_radian)},
+                                    {"arm", over_time(flight, flight["arm_rad"], degrees_per_radian)},
+                                    {"arm, reference", over_time(flight, flight["ref_arm_rad"], degrees_per_radian)}}));
+    add_common_diagrams(figures, flight, run.problem.robot.rotors.positions_m.size(),
+                        run.problem.planner.safety_margin_m, "rotors and arm");
+    finish(figures, flight, run.problem.name, std::string(name_of(run.problem.planner.variant)));
     return figures;
 }
 

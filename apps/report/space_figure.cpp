@@ -35,7 +35,7 @@ struct Layout {
     double legend_middle = 0, legend_top = 0, legend_width = 0;
 };
 
-constexpr double left_px = 80, right_px = 24, between_px = 46, below_px = 62, titles_px = 70, view_name_px = 24;
+constexpr double left_px = 92, right_px = 24, between_px = 46, below_px = 62, titles_px = 70, view_name_px = 24;
 
 Layout layout_of(const SpaceFigure& figure, double width_px, const Legend& legend) {
     constexpr double max_height = 1.15, least_legend_px = 330;
@@ -63,8 +63,8 @@ Layout layout_of(const SpaceFigure& figure, double width_px, const Legend& legen
 /// One view as elements of a plot with their data.
 class ViewDrawing {
  public:
-    ViewDrawing(const SpaceView& view, int number, double px_per_m, Legend& legend)
-        : view_(view), number_(number), px_per_m_(px_per_m), plot_(legend) {
+    ViewDrawing(const SpaceView& view, int number, double px_per_m, bool has_names, Legend& legend)
+        : view_(view), number_(number), px_per_m_(px_per_m), has_names_(has_names), plot_(legend) {
         outlines_ = visible_outlines(thinned_outlines(merged_outlines(view.obstacles), px_per_m), view.extent);
     }
 
@@ -191,7 +191,8 @@ class ViewDrawing {
             }
         }
         for (const VisibleOutline& visible : outlines_) {
-            add(picture_text(visible.outline.name, max_characters), visible.edges, "'#333333'");
+            add(has_names_ ? picture_text(visible.outline.name, max_characters) : std::string(), visible.edges,
+                "'#333333'");
         }
         ground.area = {extent.x_low_m + rim_m, extent.x_high_m - rim_m, extent.z_low_m + rim_m,
                        extent.z_high_m - rim_m};
@@ -219,6 +220,7 @@ class ViewDrawing {
     const SpaceView& view_;
     int number_;
     double px_per_m_;
+    bool has_names_;
     Plot plot_;
     std::vector<VisibleOutline> outlines_;
 };
@@ -233,7 +235,7 @@ std::string draw(const SpaceFigure& figure, const PictureSettings& settings) {
     std::vector<ViewDrawing> views;
     int number = 0;
     for (const SpaceView* view : {&figure.top, &figure.side, &figure.front}) {
-        views.emplace_back(*view, number++, layout.px_per_m, legend);
+        views.emplace_back(*view, number++, layout.px_per_m, figure.has_names, legend);
         views.back().add_elements(told);
     }
     layout = layout_of(figure, settings.width_px, legend);

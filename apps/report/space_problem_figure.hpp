@@ -6,8 +6,10 @@
 #include "downwash/base/bounds.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/problems/space_problem.hpp"
+#include "downwash/report/curve_figure.hpp"
 #include "downwash/report/field.hpp"
 #include "downwash/report/picture.hpp"
+#include "downwash/results/run_record.hpp"
 #include "downwash/scene/scene.hpp"
 
 namespace downwash {
@@ -27,11 +29,21 @@ struct SpaceView {
 struct SpaceFigure {
     std::string title, subtitle;
     SpaceView top, side, front;
+    bool has_names = true;  ///< whether obstacles have their names
 };
 
 /// A problem in space before it is planned: scene, bounds, goals, and the robot at its start.
 /// @param scene of the problem   @pre space_problem_errors(problem) is empty
 [[nodiscard]] DOWNWASH_EXPORT SpaceFigure space_problem_figure(const SpaceProblem& problem, const Scene& scene);
+
+/// A run in space: the flying robot at equal intervals of time, its way and that of its end effector, and the way that
+/// was planned.
+/// @param scene of the run's problem   @throws InputError when nothing was flown
+[[nodiscard]] DOWNWASH_EXPORT SpaceFigure space_run_figure(const SpaceRunRecord& run, const Scene& scene);
+
+/// Diagrams of a run in space over time, one below the other: tracking error, tilt and yaw, joints, rotor commands,
+/// aero factors, clearance, power. @throws InputError when nothing was flown
+[[nodiscard]] DOWNWASH_EXPORT std::vector<CurveFigure> time_figures(const SpaceRunRecord& run);
 
 /// The picture as the bytes of a file. Equal figures give equal bytes. Text may be arbitrary: it is shown, never run.
 /// @throws InputError when the width cannot be drawn  @throws PictureError when gnuplot cannot

@@ -26,16 +26,16 @@ downwash::Spread exactly(double difference) {
 }
 
 /// The problems of a study with something else uncertain.
-std::vector<Problem> with(std::vector<Problem> problems, const std::optional<Uncertainty>& uncertainty) {
-    for (Problem& problem : problems) {
-        problem.uncertainty = uncertainty;
+std::vector<AnyProblem> with(std::vector<AnyProblem> problems, const std::optional<Uncertainty>& uncertainty) {
+    for (AnyProblem& problem : problems) {
+        uncertainty_of(problem) = uncertainty;
     }
     return problems;
 }
 
-std::vector<Problem> in_worlds(std::vector<Problem> problems, std::uint64_t worlds) {
-    for (Problem& problem : problems) {
-        problem.planner.worlds = worlds;
+std::vector<AnyProblem> in_worlds(std::vector<AnyProblem> problems, std::uint64_t worlds) {
+    for (AnyProblem& problem : problems) {
+        planner_of(problem).worlds = worlds;
     }
     return problems;
 }
@@ -60,11 +60,11 @@ StudyPart nominal_part(const StudySettings& settings) {
 StudyPart pessimistic_part(const StudySettings& settings) {
     Campaign campaign = campaign_of(settings, "pessimistic");
     campaign.margins_m = {0.1};
-    std::vector<Problem> problems = in_worlds(with(settings.problems, pessimistic_world()), 2);
-    for (Problem& problem : problems) {
+    std::vector<AnyProblem> problems = in_worlds(with(settings.problems, pessimistic_world()), 2);
+    for (AnyProblem& problem : problems) {
         // Its worlds are all the same one: a certificate says nothing, and should cost nothing.
-        problem.planner.max_failure_probability = 0.5;
-        problem.planner.confidence = 0.5;
+        planner_of(problem).max_failure_probability = 0.5;
+        planner_of(problem).confidence = 0.5;
     }
     return {
         campaign.name, own_setting, "one pessimistic world", false, {campaign, std::move(problems), settings.problems}};
@@ -81,7 +81,7 @@ StudyPart worlds_part(const StudySettings& settings, std::uint64_t worlds) {
 
 std::vector<StudyPart> camp_parts(const StudySettings& settings) {
     constexpr std::uint64_t particles = 20;  // as CAMP has
-    const std::vector<Problem> uncertain = with(settings.problems, camp_uncertainty());
+    const std::vector<AnyProblem> uncertain = with(settings.problems, camp_uncertainty());
     const Campaign nominal = campaign_of(settings, "camp_as_believed");
     const Campaign robust = campaign_of(settings, "camp_worlds_20");
     return {{nominal.name, camp_setting, "nominal", false, {nominal, with(settings.problems, {}), uncertain}},

@@ -11,7 +11,7 @@ namespace downwash::bench {
 
 /// How large a study of uncertainty is.
 struct StudySettings {
-    std::vector<Problem> problems;      ///< each with an uncertainty
+    std::vector<AnyProblem> problems;   ///< each with an uncertainty
     std::uint64_t seeds = 20;           ///< 1 to `seeds`
     double time_limit_s = 5;            ///< time limit of one search
     std::uint64_t worlds = 300;         ///< in which every reported plan is flown

@@ -63,6 +63,12 @@ run mp-arm-da 3000 3
 cp "$work/run/plots.svg" plots_mp_arm_da.svg
 run mp-arm-ada 3000 0
 
+# A flight in space, in three views.
+girder=$problems/space/around_a_girder
+"$downwash" execute "$girder.yaml" --plan "$girder.json" --quiet --out "$work/in_space" >/dev/null
+"$downwash" report "$work/in_space" --svg --width 900 >/dev/null
+cp "$work/in_space/flight.svg" flight_in_space.svg
+
 # Block diagrams.
 ./blocks.py blocks.txt .
 

@@ -19,6 +19,7 @@ struct ExportFormat {
     bool is_to_be_flown = false;  ///< commands for a vehicle
     bool has_rate = false;        ///< made of set-points at ExportSettings::rate_hz
     bool has_origin = false;      ///< needs ExportSettings::origin
+    bool has_bearing = false;     ///< asks where north is: ExportSettings::bearing_deg
 };
 
 /// All formats for a run.
@@ -34,11 +35,19 @@ inline constexpr std::array export_formats{
                                 "trajectory_msgs/JointTrajectory of the arm",
                  .is_to_be_flown = true,
                  .has_rate = true},
+    ExportFormat{.name = "px4",
+                 .file_name = "px4.json",
+                 .description = "the same for PX4's offboard mode: px4_msgs/TrajectorySetpoint in its axes (north, "
+                                "east, down; yaw from north, -pi to pi), and the arm as in ros",
+                 .is_to_be_flown = true,
+                 .has_rate = true,
+                 .has_bearing = true},
     ExportFormat{.name = "qgc",
                  .file_name = "mission.plan",
                  .description = "the vehicle's way as a mission for QGroundControl; without the arm",
                  .is_to_be_flown = true,
-                 .has_origin = true},
+                 .has_origin = true,
+                 .has_bearing = true},
     ExportFormat{.name = "vtp",
                  .file_name = "flight.vtp",
                  .description = "the flight as VTK polydata: the ways of vehicle and end effector with all columns"},
@@ -50,9 +59,14 @@ inline constexpr std::array export_formats{
 /// @throws InputError if the run lacks what the format shows (plan, flight), or a setting is missing or out of range
 [[nodiscard]] DOWNWASH_EXPORT std::string exported(const RunRecord& run, const ExportFormat& format,
                                                    const ExportSettings& settings);
+/// The same of a run in space.
+[[nodiscard]] DOWNWASH_EXPORT std::string exported(const SpaceRunRecord& run, const ExportFormat& format,
+                                                   const ExportSettings& settings);
 
 /// What a format leaves out or cannot keep of a run, for those who fly it.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<std::string> export_warnings(const RunRecord& run,
+                                                                       const ExportFormat& format);
+[[nodiscard]] DOWNWASH_EXPORT std::vector<std::string> export_warnings(const SpaceRunRecord& run,
                                                                        const ExportFormat& format);
 
 }  // namespace downwash

@@ -9,7 +9,6 @@ struct GeodeticOrigin {
     double latitude_deg = 0;   ///< WGS 84, -90 to 90
     double longitude_deg = 0;  ///< -180 to 180
     double altitude_m = 0;     ///< height of z = 0 above mean sea level
-    double bearing_deg = 0;    ///< compass direction of the x axis, clockwise from north, -360 to 360
 };
 
 /// What a mission does after the plan.
@@ -23,6 +22,7 @@ enum class MissionEnd {
 struct ExportSettings {
     std::optional<double> rate_hz;  ///< rate of set-points; empty: the rate of the controller
     std::optional<GeodeticOrigin> origin;
+    double bearing_deg = 0;  ///< compass direction of the world's x axis, clockwise from north, -360 to 360
     MissionEnd mission_end = MissionEnd::hover;
 };
 

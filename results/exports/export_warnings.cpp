@@ -10,7 +10,7 @@
 namespace downwash {
 namespace {
 
-bool has_certificate(const RunRecord& run) {
+bool has_certificate(const RunInWorld& run) {
     const auto solution = nlohmann::json::parse(run.solution_text, nullptr, false);
     if (!solution.is_object() || !solution.contains("certificate")) {
         return false;
@@ -19,18 +19,21 @@ bool has_certificate(const RunRecord& run) {
     return certificate.is_object() && certificate.value("given", false);
 }
 
-/// By how much the arm moves in the flight.
-double arm_range_rad(const RunRecord& run) {
-    const std::vector<double>* angles = run.flight.find("arm_rad");
-    if (angles == nullptr || angles->empty()) {
-        return 0;
+/// By how much the joint of the arm that moves most moves in the flight.
+double arm_range_rad(const RunInWorld& run) {
+    double range_rad = 0;
+    for (const JointInWorld& joint : run.joints) {
+        const std::vector<double>* angles = run.flight.find(joint.axis.position);
+        if (angles != nullptr && !angles->empty()) {
+            const auto [low, high] = std::ranges::minmax_element(*angles);
+            range_rad = std::max(range_rad, *high - *low);
+        }
     }
-    const auto [low, high] = std::ranges::minmax_element(*angles);
-    return *high - *low;
+    return range_rad;
 }
 
 /// Infinite without obstacles.
-double least_clearance_m(const RunRecord& run) {
+double least_clearance_m(const RunInWorld& run) {
     double least_m = INFINITY;
     if (const std::vector<double>* clearances_m = run.flight.find("clearance_m")) {
         for (const double clearance_m : *clearances_m) {
@@ -40,9 +43,7 @@ double least_clearance_m(const RunRecord& run) {
     return least_m;
 }
 
-}  // namespace
-
-std::vector<std::string> export_warnings(const RunRecord& run, const ExportFormat& format) {
+std::vector<std::string> warnings_of(const RunInWorld& run, const ExportFormat& format) {
     constexpr double small_arm_range_rad = 5 / degrees_per_radian;
     std::vector<std::string> warnings;
     if (!format.has_origin) {
@@ -65,6 +66,16 @@ std::vector<std::string> export_warnings(const RunRecord& run, const ExportForma
             "`uncertainty:`, or see `downwash validate --runs`");
     }
     return warnings;
+}
+
+}  // namespace
+
+std::vector<std::string> export_warnings(const RunRecord& run, const ExportFormat& format) {
+    return warnings_of(in_world(run), format);
+}
+
+std::vector<std::string> export_warnings(const SpaceRunRecord& run, const ExportFormat& format) {
+    return warnings_of(in_world(run), format);
 }
 
 }  // namespace downwash

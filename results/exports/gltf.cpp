@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -8,7 +9,6 @@
 #include "downwash/base/version.hpp"
 #include "downwash/exports/formats.hpp"
 #include "downwash/scene/bounding_box.hpp"
-#include "downwash/scene/obstacle_placement.hpp"
 #include "downwash/scene/solid_surface.hpp"
 
 // glTF 2.0 in one binary file (Khronos, "glTF 2.0 Specification", 4.4): a head, a piece of JSON, a piece of numbers.
@@ -22,18 +22,6 @@ using Json = nlohmann::ordered_json;
 constexpr int unsigned_int_type = 5125, float_type = 5126;
 constexpr int vertex_buffer = 34962, index_buffer = 34963;
 constexpr int line_strip_mode = 3;
-
-struct Quaternion {
-    double x = 0, y = 0, z = 0, w = 1;
-
-    static Quaternion about_y(double angle_rad) { return {0, std::sin(angle_rad / 2), 0, std::cos(angle_rad / 2)}; }
-    static Quaternion about_z(double angle_rad) { return {0, 0, std::sin(angle_rad / 2), std::cos(angle_rad / 2)}; }
-
-    friend Quaternion operator*(const Quaternion& a, const Quaternion& b) {
-        return {a.w * b.x + a.x * b.w + a.y * b.z - a.z * b.y, a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x,
-                a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w, a.w * b.w - a.x * b.x - a.y * b.y - a.z * b.z};
-    }
-};
 
 /// A document that grows node by node.
 class Gltf {
@@ -166,8 +154,15 @@ class Gltf {
     Json channels_ = Json::array(), samplers_ = Json::array();
 };
 
-std::vector<float> floats_of(const Quaternion& q) {
-    return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
+/// In the format's order: x, y, z, w. @param q (w, x, y, z)
+std::vector<float> rotation_of(const std::array<double, 4>& q) {
+    return {static_cast<float>(q[1]), static_cast<float>(q[2]), static_cast<float>(q[3]), static_cast<float>(q[0])};
+}
+
+/// About an axis of length 1.
+std::vector<float> rotation_about(const Vector3& axis, double angle_rad) {
+    const Vector3 part = std::sin(angle_rad / 2) * axis;
+    return rotation_of({std::cos(angle_rad / 2), part[0] + 0., part[1] + 0., part[2] + 0.});  // no negative zeros
 }
 
 /// A place near to another one in whole kilometres, which floats hold exactly: what is within a kilometre of it has
@@ -207,51 +202,41 @@ Vector3 middle_of(const TriangleMesh& surface) {
     return 0.5 * (bounds.low_m + bounds.high_m);
 }
 
-/// Where the vehicle is at the beginning, for viewers that show no animation.
-struct Pose {
-    Vector3 place_m{};
-    Quaternion attitude, arm;
+/// The nodes that move.
+struct MovingNodes {
+    std::size_t vehicle = 0;
+    std::vector<std::size_t> links;
 };
 
-Pose pose_of(const PlaneOfMotion& plane, double x_m, double z_m, double pitch_rad, double arm_rad) {
-    return {plane.to_world(x_m, 0, z_m), Quaternion::about_z(plane.heading_rad()) * Quaternion::about_y(pitch_rad),
-            Quaternion::about_y(arm_rad)};
-}
-
-Pose first_pose(const RunRecord& run) {
-    if (run.flight.rows() == 0) {
-        const Start& start = run.problem.start;
-        return pose_of(run.problem.plane, start.at[plane::x], start.at[plane::z], start.pitch_rad,
-                       start.at[plane::arm]);
-    }
-    const auto first = [&run](std::string_view name) { return run.flight.find(name)->front(); };
-    return pose_of(run.problem.plane, first("x_m"), first("z_m"), first("pitch_rad"), first("arm_rad"));
-}
-
-/// Bodies, rotors and the joint with its arm.
-/// @return the nodes of vehicle and arm
-std::pair<std::size_t, std::size_t> add_robot(Gltf& gltf, const Robot& robot, const Pose& pose) {
+/// The multirotor with its parts, and the arm on it.
+/// @param pose where viewers that show no animation have it
+MovingNodes add_robot(Gltf& gltf, const RobotSurfaces& robot, const SpacePose& pose) {
+    MovingNodes moving;
     std::vector<std::size_t> parts;
-    for (const BodyShape& body : robot.body) {
-        parts.push_back(
-            gltf.add_node({{"name", "body"}, {"mesh", gltf.add_mesh(surface_of(as_obstacle(body)), Gltf::vehicle)}}));
+    for (const auto& [name, surface] : robot.body) {
+        parts.push_back(gltf.add_node({{"name", name}, {"mesh", gltf.add_mesh(surface, Gltf::vehicle)}}));
     }
-    constexpr double disc_thickness_m = 0.01;
-    for (const Vector3& hub_m : robot.rotors.positions_m) {
-        const Obstacle disc{"", Cylinder{robot.rotors.radius_m, disc_thickness_m}, hub_m, {}};
-        parts.push_back(gltf.add_node({{"name", "rotor"}, {"mesh", gltf.add_mesh(surface_of(disc), Gltf::vehicle)}}));
+    for (std::size_t i = robot.links.size(); i-- > 0;) {  // from the tip, as a node names what is mounted on it
+        const RobotSurfaces::Link& link = robot.links[i];
+        Json node{{"name", link.name},
+                  {"translation", link.joint_m},
+                  {"rotation", rotation_about(link.axis, pose.joints_rad[i])}};
+        if (!link.surface.triangles.empty()) {
+            node["mesh"] = gltf.add_mesh(link.surface, Gltf::arm);
+        }
+        if (!moving.links.empty()) {
+            node["children"] = {moving.links.front()};
+        }
+        moving.links.insert(moving.links.begin(), gltf.add_node(std::move(node)));
     }
-    const TriangleMesh rod = rod_surface(robot.arm.length_m, robot.arm.radius_m);
-    const std::size_t arm = gltf.add_node({{"name", "arm"},
-                                           {"translation", {robot.arm.joint_x_m, 0., robot.arm.joint_z_m}},
-                                           {"rotation", floats_of(pose.arm)},
-                                           {"mesh", gltf.add_mesh(rod, Gltf::arm)}});
-    parts.push_back(arm);
-    const std::size_t vehicle = gltf.add_node({{"name", robot.name},
-                                               {"translation", pose.place_m},
-                                               {"rotation", floats_of(pose.attitude)},
-                                               {"children", parts}});
-    return {vehicle, arm};
+    if (!moving.links.empty()) {
+        parts.push_back(moving.links.front());
+    }
+    moving.vehicle = gltf.add_node({{"name", robot.name},
+                                    {"translation", pose.position_m},
+                                    {"rotation", rotation_of(pose.attitude)},
+                                    {"children", parts}});
+    return moving;
 }
 
 void append(std::vector<float>& list, const std::vector<float>& more) {
@@ -265,44 +250,48 @@ void append(std::vector<float>& list, const Vector3& point_m) {
 }
 
 /// @param origin_m world place from which coordinates count   @return the node that shows the way
-std::size_t add_flight(Gltf& gltf, const RunRecord& run, const Vector3& origin_m, std::size_t vehicle,
-                       std::size_t arm) {
-    const NumberTable& flight = run.flight;
-    std::vector<float> times, places, attitudes, arms;
-    const Quaternion heading = Quaternion::about_z(run.problem.plane.heading_rad());
-    for (std::size_t row = 0; row < flight.rows(); ++row) {
-        times.push_back(static_cast<float>((*flight.find("t_s"))[row]));
-        append(places,
-               run.problem.plane.to_world((*flight.find("x_m"))[row], 0, (*flight.find("z_m"))[row]) - origin_m);
-        append(attitudes, floats_of(heading * Quaternion::about_y((*flight.find("pitch_rad"))[row])));
-        append(arms, floats_of(Quaternion::about_y((*flight.find("arm_rad"))[row])));
+std::size_t add_flight(Gltf& gltf, const RunInWorld& run, const RobotSurfaces& robot, const Vector3& origin_m,
+                       const MovingNodes& moving) {
+    std::vector<float> times, places, attitudes;
+    std::vector<std::vector<float>> joints(robot.links.size());
+    for (std::size_t row = 0; row < run.flight.rows(); ++row) {
+        const SpacePose pose = run.pose(row);
+        times.push_back(static_cast<float>((*run.flight.find("t_s"))[row]));
+        append(places, pose.position_m - origin_m);
+        append(attitudes, rotation_of(pose.attitude));
+        for (std::size_t i = 0; i < joints.size(); ++i) {
+            append(joints[i], rotation_about(robot.links[i].axis, pose.joints_rad[i]));
+        }
     }
     const std::size_t input = gltf.add_floats(times, 1, false);
-    gltf.animate(vehicle, "translation", input, gltf.add_floats(places, 3, false));
-    gltf.animate(vehicle, "rotation", input, gltf.add_floats(attitudes, 4, false));
-    gltf.animate(arm, "rotation", input, gltf.add_floats(arms, 4, false));
+    gltf.animate(moving.vehicle, "translation", input, gltf.add_floats(places, 3, false));
+    gltf.animate(moving.vehicle, "rotation", input, gltf.add_floats(attitudes, 4, false));
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+        gltf.animate(moving.links[i], "rotation", input, gltf.add_floats(joints[i], 4, false));
+    }
     return gltf.add_node({{"name", "flight path"}, {"mesh", gltf.add_line(places)}});
 }
 
 }  // namespace
 
-std::string gltf_binary(const RunRecord& run, const ExportSettings&) {
+std::string gltf_binary(const RunInWorld& run, const ExportSettings&) {
     Gltf gltf;
     // Buffers hold floats. Everything counts from an origin near the flight, which a node above has as text, in double.
-    Pose pose = first_pose(run);
-    const Vector3 origin_m = whole_kilometres(pose.place_m);
-    pose.place_m = pose.place_m - origin_m;
+    SpacePose pose = run.flight.rows() > 0 ? run.pose(0) : run.start;
+    const Vector3 origin_m = whole_kilometres(pose.position_m);
+    pose.position_m = pose.position_m - origin_m;
     std::vector<std::size_t> children;
-    for (const Obstacle& obstacle : run.problem.obstacles) {
+    for (const Obstacle& obstacle : run.obstacles) {
         const TriangleMesh surface = seen_from(origin_m, surface_of(obstacle));
         const Vector3 own_m = whole_kilometres(middle_of(surface));
         children.push_back(gltf.add_node(node_at(
             own_m, {{"name", obstacle.name}, {"mesh", gltf.add_mesh(seen_from(own_m, surface), Gltf::obstacle)}})));
     }
-    const auto [vehicle, arm] = add_robot(gltf, run.problem.robot, pose);
-    children.push_back(vehicle);
+    const RobotSurfaces robot = run.robot();
+    const MovingNodes moving = add_robot(gltf, robot, pose);
+    children.push_back(moving.vehicle);
     if (run.flight.rows() > 1) {
-        children.push_back(add_flight(gltf, run, origin_m, vehicle, arm));
+        children.push_back(add_flight(gltf, run, robot, origin_m, moving));
     }
     if (origin_m != Vector3{}) {
         children = {gltf.add_node(node_at(origin_m, {{"name", "origin"}, {"children", children}}))};
@@ -310,7 +299,7 @@ std::string gltf_binary(const RunRecord& run, const ExportSettings&) {
     constexpr double half_root = 0.70710678118654752;
     const std::size_t root =
         gltf.add_node({{"name", "z up"}, {"rotation", {-half_root, 0., 0., half_root}}, {"children", children}});
-    return gltf.text(root, run.problem.name);
+    return gltf.text(root, run.name);
 }
 
 }  // namespace downwash

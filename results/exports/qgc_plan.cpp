@@ -56,11 +56,11 @@ struct Geodetic {
 /// Places of the world frame on the Earth.
 class OnEarth {
  public:
-    explicit OnEarth(const GeodeticOrigin& origin)
+    OnEarth(const GeodeticOrigin& origin, double bearing_deg)
         : local_(origin.latitude_deg, origin.longitude_deg, origin.altitude_m),
-          sine_(std::sin(origin.bearing_deg / degrees_per_radian)),
-          cosine_(std::cos(origin.bearing_deg / degrees_per_radian)),
-          bearing_deg_(origin.bearing_deg) {}
+          sine_(std::sin(bearing_deg / degrees_per_radian)),
+          cosine_(std::cos(bearing_deg / degrees_per_radian)),
+          bearing_deg_(bearing_deg) {}
 
     [[nodiscard]] Geodetic at(const Vector3& world_m) const {
         const double east_m = world_m[0] * sine_ - world_m[1] * cosine_;
@@ -81,27 +81,35 @@ class OnEarth {
     double sine_, cosine_, bearing_deg_;
 };
 
-void check(const GeodeticOrigin& origin) {
+void check(const GeodeticOrigin& origin, double bearing_deg) {
     const bool is_sound = std::abs(origin.latitude_deg) <= 90 && std::abs(origin.longitude_deg) <= 180 &&
-                          std::abs(origin.altitude_m) <= 1e5 && std::abs(origin.bearing_deg) <= 360;
+                          std::abs(origin.altitude_m) <= 1e5 && std::abs(bearing_deg) <= max_bearing_deg;
     if (!is_sound) {
         throw_input_error("the origin is at latitude " + to_text(origin.latitude_deg) + ", longitude " +
                           to_text(origin.longitude_deg) + ", altitude " + to_text(origin.altitude_m) + " m, bearing " +
-                          to_text(origin.bearing_deg) +
-                          ": expected -90 to 90, -180 to 180, -1e5 to 1e5 and -360 to 360");
+                          to_text(bearing_deg) + ": expected -90 to 90, -180 to 180, -1e5 to 1e5 and -360 to 360");
     }
 }
 
 /// A corner of the mission, and for how long it is held.
 struct Corner {
-    Configuration at;
+    Vector3 place_m{};
+    double yaw_rad = 0;
     double hold_s = 0;
 };
+
+Corner corner_at(const Setpoint& point) {
+    return {point.position_m, point.yaw_rad};
+}
+
+double length_m(const Vector3& v) {
+    return std::hypot(v[0], v[1], v[2]);
+}
 
 /// A mission flies straight from corner to corner: the corners that keep it on the plan's curves.
 class Corners {
  public:
-    explicit Corners(const Plan& plan) : plan_(plan) {}
+    explicit Corners(const WayInWorld& plan) : plan_(plan) {}
 
     /// The way of the plan from one time to another, both of which are corners, without the first.
     void add_way(double from_s, double to_s) {
@@ -110,7 +118,7 @@ class Corners {
             add_way(from_s, middle_s);
             add_way(middle_s, to_s);
         } else {
-            corners.push_back({at(to_s)});
+            corners.push_back(corner_at(plan_.at(to_s)));
         }
     }
 
@@ -119,65 +127,58 @@ class Corners {
  private:
     static constexpr double most_bulge_m = 0.02;
 
-    [[nodiscard]] Configuration at(double t_s) const { return configuration_of(plan_.at_time(t_s)); }
+    [[nodiscard]] Vector3 place_m(double t_s) const { return plan_.at(t_s).position_m; }
 
     /// How far the plan is from the straight line between its places at two times [m].
     [[nodiscard]] double bulge_m(double from_s, double to_s) const {
         constexpr int samples = 16;
-        const Configuration from = at(from_s), to = at(to_s);
-        const double along_x = to[plane::x] - from[plane::x], along_z = to[plane::z] - from[plane::z];
-        const double length_2 = along_x * along_x + along_z * along_z;
+        const Vector3 from_m = place_m(from_s), along_m = place_m(to_s) - from_m;
+        const double length_2 = dot(along_m, along_m);
         double most_m = 0;
         for (int i = 1; i < samples; ++i) {
-            const Configuration here = at(from_s + (to_s - from_s) * i / samples);
-            const double dx = here[plane::x] - from[plane::x], dz = here[plane::z] - from[plane::z];
-            const double share = length_2 > 0 ? std::clamp((dx * along_x + dz * along_z) / length_2, 0., 1.) : 0;
-            most_m = std::max(most_m, std::hypot(dx - share * along_x, dz - share * along_z));
+            const Vector3 here_m = place_m(from_s + (to_s - from_s) * i / samples) - from_m;
+            const double share = length_2 > 0 ? std::clamp(dot(here_m, along_m) / length_2, 0., 1.) : 0;
+            most_m = std::max(most_m, length_m(here_m - share * along_m));
         }
         return most_m;
     }
 
-    const Plan& plan_;
+    const WayInWorld& plan_;
 };
 
 /// A plan holds at a goal between two knots at the same place, and at the last one until the flight ends.
-std::vector<Corner> corners_of(const RunRecord& run) {
-    const Plan& plan = plan_to_be_flown(run);
+std::vector<Corner> corners_of(const RunInWorld& run) {
+    const WayInWorld& plan = plan_to_be_flown(run);
     Corners way(plan);
-    way.corners.push_back({configuration_of(plan.reference.front().point)});
-    for (std::size_t i = 1; i < plan.reference.size(); ++i) {
-        const ReferenceKnot &from = plan.reference[i - 1], &to = plan.reference[i];
-        const Configuration begin = configuration_of(from.point), end = configuration_of(to.point);
-        const double from_s = static_cast<double>(from.tick) * plan.tick_s;
-        const double to_s = static_cast<double>(to.tick) * plan.tick_s;
-        if (begin[plane::x] == end[plane::x] && begin[plane::z] == end[plane::z]) {
-            way.corners.back().hold_s += to_s - from_s;
+    way.corners.push_back(corner_at(plan.knots.front()));
+    for (std::size_t i = 1; i < plan.knots.size(); ++i) {
+        const Setpoint &from = plan.knots[i - 1], &to = plan.knots[i];
+        if (from.position_m != to.position_m) {
+            way.add_way(from.t_s, to.t_s);
+        } else if (from.yaw_rad != to.yaw_rad) {
+            way.corners.push_back(corner_at(to));
         } else {
-            way.add_way(from_s, to_s);
+            way.corners.back().hold_s += to.t_s - from.t_s;
         }
     }
-    way.corners.back().hold_s += end_of_hover_s(run) - plan.duration_s();
+    way.corners.back().hold_s += plan.end_s - plan.duration_s();
     return way.corners;
 }
 
 /// The items of a mission.
 class Items {
  public:
-    Items(const OnEarth& earth, const PlaneOfMotion& plane, double home_altitude_m)
-        : earth_(earth),
-          plane_(plane),
-          home_altitude_m_(home_altitude_m),
-          bearing_deg_(earth.bearing_deg(plane.heading_rad())) {}
+    Items(const OnEarth& earth, double home_altitude_m) : earth_(earth), home_altitude_m_(home_altitude_m) {}
 
     /// @param parameters the first three
-    void add_at(const Configuration& at, int command, const std::array<double, 3>& parameters) {
-        const Geodetic place = earth_.at(plane_.to_world(at[plane::x], 0, at[plane::z]));
-        add_at(place, place.altitude_m - home_altitude_m_, command, parameters);
+    void add_at(const Corner& corner, int command, const std::array<double, 3>& parameters) {
+        const Geodetic place = earth_.at(corner.place_m);
+        add_at(place, place.altitude_m - home_altitude_m_, corner.yaw_rad, command, parameters);
     }
 
     /// Below a place, at the altitude of home.
-    void add_landing(const Configuration& at) {
-        add_at(earth_.at(plane_.to_world(at[plane::x], 0, at[plane::z])), 0, land_command, {0, 0, 0});
+    void add_landing(const Corner& corner) {
+        add_at(earth_.at(corner.place_m), 0, corner.yaw_rad, land_command, {0, 0, 0});
     }
 
     /// Without a place.
@@ -193,7 +194,8 @@ class Items {
     [[nodiscard]] Json take() { return std::move(items_); }
 
  private:
-    void add_at(const Geodetic& place, double above_home_m, int command, const std::array<double, 3>& parameters) {
+    void add_at(const Geodetic& place, double above_home_m, double yaw_rad, int command,
+                const std::array<double, 3>& parameters) {
         items_.push_back({{"AMSLAltAboveTerrain", nullptr},
                           {"Altitude", above_home_m},
                           {"AltitudeMode", relative_altitude_mode},
@@ -202,30 +204,29 @@ class Items {
                           {"doJumpId", items_.size() + 1},
                           {"frame", relative_altitude_frame},
                           {"params",
-                           {parameters[0], parameters[1], parameters[2], bearing_deg_, place.latitude_deg,
-                            place.longitude_deg, above_home_m}},
+                           {parameters[0], parameters[1], parameters[2], earth_.bearing_deg(yaw_rad),
+                            place.latitude_deg, place.longitude_deg, above_home_m}},
                           {"type", "SimpleItem"}});
     }
 
     const OnEarth& earth_;
-    const PlaneOfMotion& plane_;
-    double home_altitude_m_, bearing_deg_;
+    double home_altitude_m_;
     Json items_ = Json::array();
 };
 
-Json items_of(const RunRecord& run, const OnEarth& earth, const ExportSettings& settings) {
+Json items_of(const RunInWorld& run, const OnEarth& earth, const ExportSettings& settings) {
     const std::vector<Corner> corners = corners_of(run);
-    Items items(earth, run.problem.plane, settings.origin->altitude_m);
-    items.add_at(corners.front().at, takeoff_command, {0, 0, 0});
+    Items items(earth, settings.origin->altitude_m);
+    items.add_at(corners.front(), takeoff_command, {0, 0, 0});
     // The hover speed of a mission only feeds estimates of its time.
-    items.add(change_speed_command, {ground_speed, run.problem.motion.max_speed_m_s, same_throttle, 0, 0, 0, 0});
+    items.add(change_speed_command, {ground_speed, run.max_speed_m_s, same_throttle, 0, 0, 0, 0});
     for (std::size_t i = 0; i < corners.size(); ++i) {
         if (i > 0 || corners[i].hold_s > 0) {
-            items.add_at(corners[i].at, waypoint_command, {corners[i].hold_s, acceptance_radius_m, 0});
+            items.add_at(corners[i], waypoint_command, {corners[i].hold_s, acceptance_radius_m, 0});
         }
     }
     if (settings.mission_end == MissionEnd::land) {
-        items.add_landing(corners.back().at);
+        items.add_landing(corners.back());
     } else if (settings.mission_end == MissionEnd::return_home) {
         items.add(return_command, {});
     }
@@ -234,23 +235,23 @@ Json items_of(const RunRecord& run, const OnEarth& earth, const ExportSettings& 
 
 }  // namespace
 
-std::string qgc_plan(const RunRecord& run, const ExportSettings& settings) {
+std::string qgc_plan(const RunInWorld& run, const ExportSettings& settings) {
     if (!settings.origin) {
         throw_input_error("a mission needs to know where the scene lies: give --origin LATITUDE LONGITUDE ALTITUDE");
     }
-    check(*settings.origin);
+    check(*settings.origin, settings.bearing_deg);
     const GeodeticOrigin& home = *settings.origin;
     const Json plan{{"fileType", "Plan"},
                     {"geoFence", {{"circles", Json::array()}, {"polygons", Json::array()}, {"version", 2}}},
                     {"groundStation", "QGroundControl"},
                     {"mission",
-                     {{"cruiseSpeed", run.problem.motion.max_speed_m_s},
+                     {{"cruiseSpeed", run.max_speed_m_s},
                       {"firmwareType", px4_firmware},
                       {"globalPlanAltitudeMode", relative_altitude_mode},
-                      {"hoverSpeed", run.problem.motion.max_speed_m_s},
-                      {"items", items_of(run, OnEarth(home), settings)},
+                      {"hoverSpeed", run.max_speed_m_s},
+                      {"items", items_of(run, OnEarth(home, settings.bearing_deg), settings)},
                       {"plannedHomePosition", {home.latitude_deg, home.longitude_deg, home.altitude_m}},
-                      {"vehicleType", vehicle_type(run.problem.robot.rotors.positions_m.size())},
+                      {"vehicleType", vehicle_type(run.rotors)},
                       {"version", 2}}},
                     {"rallyPoints", {{"points", Json::array()}, {"version", 2}}},
                     {"version", 1}};

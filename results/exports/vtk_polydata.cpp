@@ -58,18 +58,16 @@ std::string names_array(const std::vector<Obstacle>& obstacles) {
 
 }  // namespace
 
-std::string vtk_flight(const RunRecord& run, const ExportSettings&) {
+std::string vtk_flight(const RunInWorld& run, const ExportSettings&) {
     const NumberTable& flight = run.flight;
     if (flight.rows() == 0) {
         throw_input_error("this run contains no flight");
     }
     std::string points, lines;
     std::size_t count = 0;
-    for (const auto& [x_name, z_name] : {std::pair{"x_m", "z_m"}, std::pair{"ee_x_m", "ee_z_m"}}) {
-        const std::vector<double>& x_m = *flight.find(x_name);
-        const std::vector<double>& z_m = *flight.find(z_name);
+    for (const bool is_end_effector : {false, true}) {
         for (std::size_t row = 0; row < flight.rows(); ++row) {
-            append_point(points, run.problem.plane.to_world(x_m[row], 0, z_m[row]));
+            append_point(points, is_end_effector ? run.end_effector_m(row) : run.pose(row).position_m);
             lines += std::to_string(count++) + ' ';
         }
     }
@@ -94,10 +92,10 @@ std::string vtk_flight(const RunRecord& run, const ExportSettings&) {
                         cells("Lines", lines, std::to_string(flight.rows()) + ' ' + std::to_string(count)));
 }
 
-std::string vtk_scene(const RunRecord& run, const ExportSettings&) {
+std::string vtk_scene(const RunInWorld& run, const ExportSettings&) {
     std::string points, corners, offsets, obstacles;
     PieceCounts counts;
-    const std::vector<Obstacle>& all = run.problem.obstacles;
+    const std::vector<Obstacle>& all = run.obstacles;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const TriangleMesh surface = surface_of(all[i]);
         for (const Vector3& vertex_m : surface.vertices_m) {

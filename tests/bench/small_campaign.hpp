@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 #include <string>
 #include <tuple>
+#include <variant>
 #include <vector>
 
 #include "../support/scratch_folder.hpp"
@@ -27,6 +28,11 @@ inline ReadCampaign small_campaign(std::uint64_t seeds = 2) {
     read.campaign.seeds.count = seeds;
     read.campaign.max_iterations = 150;
     return read;
+}
+
+/// A problem of a campaign that is one in a plane.
+inline Problem& planar(AnyProblem& problem) {
+    return std::get<Problem>(problem);
 }
 
 inline CampaignProgress run_into(const ScratchFolder& folder, const ReadCampaign& read, bool resumes = false) {

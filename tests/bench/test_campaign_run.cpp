@@ -109,8 +109,8 @@ TEST_CASE("what is read from a file of results is what was written, by one progr
 TEST_CASE("plans are flown in worlds that do not depend on threads, and certificates are kept") {
     const ScratchFolder alone, together;
     ReadCampaign read = small_campaign(2);
-    read.problems[0].uncertainty = Uncertainty();
-    read.problems[0].planner.max_failure_probability = 0.3;
+    planar(read.problems[0]).uncertainty = Uncertainty();
+    planar(read.problems[0]).planner.max_failure_probability = 0.3;
     read.campaign.variants = {Variant::mp_arm, Variant::mp_arm_ada};
     read.campaign.evaluation_worlds = 9;
     read.campaign.jobs = 1;
@@ -145,21 +145,21 @@ TEST_CASE("plans made for one uncertainty are flown in the worlds of another") {
     ReadCampaign read = small_campaign(1);
     read.campaign.evaluation_worlds = 4;
     read.evaluated_in = read.problems;
-    read.evaluated_in[0].uncertainty = Uncertainty();
+    planar(read.evaluated_in[0]).uncertainty = Uncertainty();
     run_into(folder, read);
     for (const Run& run : results_in(folder).runs) {
         CHECK_FALSE(run.certificate.has_value());
         REQUIRE(run.in_worlds.has_value());
         CHECK(run.in_worlds->worlds == 4);
     }
-    read.evaluated_in[0].uncertainty->mass_scale = downwash::Spread::of_sd(0.1);
+    planar(read.evaluated_in[0]).uncertainty->mass_scale = downwash::Spread::of_sd(0.1);
     CHECK_THROWS_WITH(run_into(folder, read, true), Catch::Contains("evaluated in ceiling"));
 }
 
 TEST_CASE("a campaign varies the parameters of its algorithms") {
     const ScratchFolder folder;
     ReadCampaign read = small_campaign(1);
-    read.problems[0].planner.parameters = {{"local_bias", 0.0}};
+    planar(read.problems[0]).planner.parameters = {{"local_bias", 0.0}};
     read.campaign.parameters = {{}, {{"goal_bias", 0.9}}, {{"first_goal_bias", 0.9}}, {{"rewire_factor", 2.0}}};
     run_into(folder, read);
     const CampaignResults results = results_in(folder);
@@ -244,7 +244,7 @@ TEST_CASE("results are neither overwritten nor mixed with those of other setting
 
     ReadCampaign other = read;
     other.campaign.max_iterations = 151;
-    other.problems[0].goal.hold_s = 6;
+    planar(other.problems[0]).goal.hold_s = 6;
     CHECK_THROWS_WITH(run_into(folder, other, true), Catch::Contains("was begun with max_iterations 150, not 151") &&
                                                          Catch::Contains("was begun with problem ceiling ") &&
                                                          Catch::Contains("choose another folder with --out"));
@@ -278,7 +278,7 @@ TEST_CASE("a margin that makes a problem impossible is a run that failed, with t
 
 TEST_CASE("experiments are problems under the campaign's objectives, or under their own") {
     ReadCampaign read = small_campaign();
-    read.problems[0].planner.objective.weight(Objective::time) = 50;
+    planar(read.problems[0]).planner.objective.weight(Objective::time) = 50;
     CHECK(plan_of(read).experiments == std::vector<Experiment>{{"ceiling", "energy + 50 time"}});
     read.campaign.objectives = {Objective::time, Objective::length};
     CHECK(plan_of(read).experiments == std::vector<Experiment>{{"ceiling", "time"}, {"ceiling", "length"}});

@@ -59,16 +59,16 @@ TEST_CASE("the parts of the study differ in what planners believe, and their pla
         names.insert(part.name);
         const auto& judging = part.read.evaluated_in.empty() ? part.read.problems : part.read.evaluated_in;
         REQUIRE(judging.size() == 1);
-        REQUIRE(judging[0].uncertainty.has_value());
+        REQUIRE(uncertainty_of(judging[0]).has_value());
         const bool is_camp = part.setting == "CAMP's";
-        CHECK((judging[0].uncertainty->center_of_mass_x_m.form == downwash::Spread::Form::sd) == is_camp);
+        CHECK((uncertainty_of(judging[0])->center_of_mass_x_m.form == downwash::Spread::Form::sd) == is_camp);
         CHECK(part.certifies == part.read.evaluated_in.empty());
         CHECK(part.read.campaign.evaluation_worlds == 3);
     }
     CHECK(names.size() == parts.size());
-    CHECK_FALSE(parts[0].read.problems[0].uncertainty.has_value());
+    CHECK_FALSE(uncertainty_of(parts[0].read.problems[0]).has_value());
     // All worlds of the pessimistic planner are the same.
-    const Problem& pessimistic = parts[1].read.problems[0];
+    const auto& pessimistic = std::get<Problem>(parts[1].read.problems[0]);
     for (const std::uint64_t index : {1U, 2U}) {
         const World world = draw_world(*pessimistic.uncertainty, pessimistic.robot, 1, index);
         CHECK(world.ceiling_scale == 0.4);

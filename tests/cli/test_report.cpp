@@ -39,6 +39,7 @@ TEST_CASE("A run is exported in every format, under the usual name") {
     const SolvedWorkspace work;
     for (const auto& [format, name] : {std::pair{"csv", "setpoints.csv"},
                                        {"ros", "trajectory.json"},
+                                       {"px4", "px4.json"},
                                        {"qgc --origin 47 -8.5 400 --bearing 90", "mission.plan"},
                                        {"vtp", "flight.vtp"},
                                        {"vtp-scene", "scene.vtp"},

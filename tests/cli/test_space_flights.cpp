@@ -201,9 +201,52 @@ TEST_CASE("Commands that cannot take a problem in space say what can be done wit
     const std::string in_space = "around_a_girder.yaml:11:26: environment.bounds.y_m makes this a problem in space";
     rejected(words("aeromap build", girder, "-o map.csv"), in_space);
     rejected(words("aeromap query", girder, "--at 0 0 1"), in_space);
-    rejected(words("export run --format csv -o run.csv"), "this is a run in space");
-    write_file(work.in_run("campaign.yaml"), "schema: downwash/campaign/v1\nproblems: [" + girder + "]\n");
-    rejected(words("bench run campaign.yaml --out campaign"), "makes this a problem in space");
+}
+
+TEST_CASE("A run in space is exported in every format and drawn") {
+    const Workspace work;
+    work.succeed("execute", girder, "--plan", reference, "--out run");
+    for (const auto& [format, name] : {std::pair{"csv", "setpoints.csv"},
+                                       {"ros", "trajectory.json"},
+                                       {"px4 --bearing 90", "px4.json"},
+                                       {"qgc --origin 47 -8.5 400 --bearing 90", "mission.plan"},
+                                       {"vtp", "flight.vtp"},
+                                       {"vtp-scene", "scene.vtp"},
+                                       {"glb", "run.glb"}}) {
+        CAPTURE(format);
+        CHECK(work.succeed("export run --format", format).out == std::string("run/") + name + "\n");
+        CHECK(work.text(std::string("run/") + name).size() > 200);
+    }
+    CHECK_THAT(work.text("run/setpoints.csv"), Catch::StartsWith("t_s,x_m,y_m,z_m,") && Contains(",joint_3_rad,"));
+    check_rejected(work.run("export run --format csv --bearing 90"), "--bearing: the format csv stays in the frame");
+    CHECK(work.succeed("report run --svg --no-labels -o figures").out == "figures/flight.svg\nfigures/plots.svg\n");
+    CHECK_THAT(work.text("figures/flight.svg"), Contains("from the front") && !Contains("bottom_flange"));
+    // The page of the run, with what the judge found.
+    work.succeed("validate", girder, "--plan run --quiet --out judged");
+    const auto judged = work.files("judged");
+    CHECK(Json::parse(judged.at("validation.json")).at("outcome") == "ok");
+    CHECK(judged.count("validation.html") == work.files("run").count("report.html"));
+    // A flight that failed is not handed on unasked.
+    write_file(work.in_run("low.json"), edited_reference(2, [](Json& knots) { knots[1]["z_m"] = 0.25; }));
+    CHECK(work.run("execute", girder, "--plan low.json --out low").code == 3);
+    check_rejected(work.run("export low --format ros"), "its flight ended 'collision'; --anyway");
+    work.succeed("export low --format ros --anyway");
+}
+
+TEST_CASE("A campaign runs problems in space and reports them, and says where it cannot") {
+    const Workspace work;
+    const std::string head = "schema: downwash/campaign/v1\nname: small\nvariants: [mp-arm-da]\nseeds: {count: 2}\n";
+    write_file(work.in_run("campaign.yaml"),
+               head + "max_iterations: 60\nas_believed: true\nevaluation_worlds: 2\nproblems: [" + girder + "]\n");
+    CHECK_THAT(work.succeed("bench run campaign.yaml --out campaign --quiet").out, Contains("2 of 2 runs"));
+    const Json report = work.json("bench report campaign");
+    CHECK_THAT(report.dump(), Contains("around_a_girder"));
+    CHECK_THAT(work.succeed("bench report campaign").out, Contains("around_a_girder"));
+    std::string text = read_file(girder);
+    text.replace(text.find("../robots/"), 10, DOWNWASH_PROBLEMS "/robots/");
+    write_file(work.in_run("holding.yaml"), text + "motion: {yaw: hold}\n");
+    write_file(work.in_run("campaign.yaml"), head + "problems: [holding.yaml]\n");
+    check_rejected(work.run("bench run campaign.yaml --out other"), "holding.yaml:25:");
 }
 
 TEST_CASE("The flights of docs/space_files.md go well and print what it quotes") {

@@ -47,7 +47,8 @@ std::uint32_t word_at(const std::string& bytes, std::size_t place) {
 
 ExportSettings at(double latitude_deg, double longitude_deg, double bearing_deg) {
     ExportSettings settings;
-    settings.origin = {latitude_deg, longitude_deg, 100, bearing_deg};
+    settings.origin = {latitude_deg, longitude_deg, 100};
+    settings.bearing_deg = bearing_deg;
     return settings;
 }
 
@@ -107,9 +108,9 @@ TEST_CASE("ROS messages hold the set-points of vehicle and arm at the same times
             CHECK(vehicle[i]["accelerations"][0]["angular"][axes[axis]] == 0);
         }
         CHECK(vehicle[i]["transforms"][0]["rotation"] == json({{"x", 0.}, {"y", 0.}, {"z", 0.}, {"w", 1.}}));
-        CHECK(arm[i]["positions"][0] == expected[i].arm_rad);
-        CHECK(arm[i]["velocities"][0] == expected[i].arm_rate_rad_s);
-        CHECK(arm[i]["accelerations"][0] == expected[i].arm_acceleration_rad_s2);
+        CHECK(arm[i]["positions"][0] == expected[i].joints[0].angle_rad);
+        CHECK(arm[i]["velocities"][0] == expected[i].joints[0].rate_rad_s);
+        CHECK(arm[i]["accelerations"][0] == expected[i].joints[0].acceleration_rad_s2);
     }
     CHECK(messages["multi_dof_joint_trajectory"]["joint_names"].size() == vehicle[0]["transforms"].size());
 }

@@ -36,7 +36,7 @@ TEST_CASE("set-points at the controller's rate are the reference that is flown")
             REQUIRE(point.t_s == Approx(tick_s * static_cast<double>(from.tick + tick)));
             REQUIRE(point.position_m[0] == Approx(expected.position[0]).margin(1e-9));
             REQUIRE(point.position_m[2] == Approx(expected.position[1]).margin(1e-9));
-            REQUIRE(point.arm_rad == Approx(expected.position[2]).margin(1e-9));
+            REQUIRE(point.joints[0].angle_rad == Approx(expected.position[2]).margin(1e-9));
             REQUIRE(point.velocity_m_s[0] == Approx(expected.velocity[0]).margin(1e-9));
             REQUIRE(point.acceleration_m_s2[2] == Approx(expected.acceleration[1]).margin(1e-9));
         }
@@ -55,8 +55,9 @@ TEST_CASE("set-points at any rate are derivatives of each other and end where th
         for (std::size_t i = 1; i + 1 < points.size() - 1; ++i) {
             const double slope = (points[i + 1].position_m[0] - points[i - 1].position_m[0]) * rate_hz / 2;
             REQUIRE(points[i].velocity_m_s[0] == Approx(slope).margin(2e-3));
-            const double arm_slope = (points[i + 1].arm_rate_rad_s - points[i - 1].arm_rate_rad_s) * rate_hz / 2;
-            REQUIRE(points[i].arm_acceleration_rad_s2 == Approx(arm_slope).margin(2e-2));
+            const double arm_slope =
+                (points[i + 1].joints[0].rate_rad_s - points[i - 1].joints[0].rate_rad_s) * rate_hz / 2;
+            REQUIRE(points[i].joints[0].acceleration_rad_s2 == Approx(arm_slope).margin(2e-2));
         }
     }
 }

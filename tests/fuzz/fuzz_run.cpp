@@ -43,7 +43,8 @@ class RunFolder {
 /// What reads well can be written for other programs; set-points aside, of which there may be a million.
 void export_run(const RunRecord& run) {
     ExportSettings settings;
-    settings.origin = GeodeticOrigin{47, 8, 100, 30};
+    settings.origin = GeodeticOrigin{47, 8, 100};
+    settings.bearing_deg = 30;
     for (const ExportFormat& format : export_formats) {
         try {
             if (!format.has_rate) {

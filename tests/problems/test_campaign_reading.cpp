@@ -39,10 +39,10 @@ TEST_CASE("a campaign is read with its problems, whose paths are relative to it"
     const CampaignFolder folder;
     const ReadCampaign read = folder.read(good_campaign);
     const Campaign& campaign = read.campaign;
-    const std::vector<Problem>& problems = read.problems;
+    const std::vector<AnyProblem>& problems = read.problems;
     CHECK(campaign.name == "trial");
     REQUIRE(problems.size() == 1);
-    CHECK(problems[0].name == "test");
+    CHECK(problem_name(problems[0]) == "test");
     CHECK(campaign.variants == std::vector{Variant::mp_arm, Variant::mp_arm_ada});
     CHECK(campaign.objectives.value() == std::vector{Objective::energy, Objective::time});
     CHECK(campaign.algorithms == std::vector<std::string>{"rrt-star"});
@@ -69,12 +69,12 @@ TEST_CASE("a nominal campaign plans without uncertainty and judges with it") {
     const CampaignFolder folder;
     folder.folder.write("problem.yaml", std::string(good_problem) + "uncertainty: {}\n");
     const ReadCampaign usual = folder.read(good_campaign);
-    CHECK(usual.problems[0].uncertainty.has_value());
+    CHECK(uncertainty_of(usual.problems[0]).has_value());
     CHECK(usual.evaluated_in.empty());
     const ReadCampaign believed = folder.read(std::string(good_campaign) + "as_believed: true\n");
-    CHECK_FALSE(believed.problems[0].uncertainty.has_value());
+    CHECK_FALSE(uncertainty_of(believed.problems[0]).has_value());
     REQUIRE(believed.evaluated_in.size() == 1);
-    CHECK(believed.evaluated_in[0].uncertainty.has_value());
+    CHECK(uncertainty_of(believed.evaluated_in[0]).has_value());
 }
 
 TEST_CASE("what cannot be run in a campaign is an error with its place and a remedy") {

@@ -105,6 +105,6 @@ TEST_CASE("What is no run in space is rejected with its place") {
     }
     SECTION("for readers of runs in the plane") {
         CHECK_THAT(error_of([&] { return read_run(run.folder()); }),
-                   Contains("effective.yaml: this is a run in space") && Contains("docs/space_files.md"));
+                   Contains("effective.yaml: this is a run in space, and one in a vertical plane is expected"));
     }
 }

@@ -7,6 +7,7 @@ import os
 import numpy as np
 
 import page_test
+import sample_page
 import sample_space
 from packing import write_page
 
@@ -162,6 +163,38 @@ class Space(page_test.BrowserTest):
         (low, high), *_ = self.view("goals()")
         self.assertAlmostEqual(high[0] - low[0], 0.2, places=2)
         self.assertAlmostEqual((high[2] + low[2]) / 2, 3, places=2)
+
+    def test_a_scene_without_a_flight_is_as_wide_as_the_page(self):
+        self.show("space-unplanned")
+        width = "(e => e.getBoundingClientRect().width)"
+        self.assertGreater(self.js(f"return {width}(document.querySelector('.stage'))"),
+                           0.9 * self.js(f"return {width}(document.querySelector('main'))"))
+
+    def test_a_search_has_its_certificate_and_its_costs_on_the_page(self):
+        def plan(report):
+            report["solution"].update(
+                threads=2, planning=sample_page.planning_json([(0.2, 30, 5000.0), (0.9, 90, 4600.0)], {"collision": 381}),
+                certificate=sample_page.certificate_json(True, 684, 0, (0, 0, 0.0054), {}))
+        self.show("space", plan)
+        self.assertEqual(self.one(".certificate-line", "e.textContent"),
+                         "Certified: 0 of 684 worlds failed; the failure probability is at most 1\u00a0% with 95\u00a0% confidence.")
+        self.assertIn("touches an obstacle", self.one(".search", "e.textContent"))
+        self.assertIn("in 2 steps", self.one(".cost-svg", "e.getAttribute('aria-label')"))
+        self.show("space")
+        self.assertEqual(self.every(".search, .certificate, .certificate-line", "e.className"), [])
+
+    def test_a_search_without_a_plan_says_what_stopped_it(self):
+        def fail(report):
+            report["flight"] = None
+            report["solution"].update(
+                status="none", plan=None, execution=None,
+                planning={**sample_page.planning_json([], {"collision": 12}), "nearest_approach_m": 0.431,
+                          "obstruction": {"cause": "collision", "goal_distance_m": 0.431, "obstacles": ["girder 2"]}})
+        self.show("space", fail)
+        self.assertEqual(self.one("#verdict-title", "e.textContent"), "No plan within the limits")
+        said = self.one(".verdict", "e.textContent")
+        self.assertIn("within 0.431\u00a0m of the goal.", said)
+        self.assertIn("What stopped it: touches an obstacle near girder 2.", said)
 
     def test_what_a_judge_found_stands_on_the_page(self):
         self.show("space-judged")

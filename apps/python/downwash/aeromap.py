@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import checked, numbers
-from .problem import Path, Problem
+from .problem import Path, Problem, in_plane
 
 __all__ = ["AeroMap", "factor", "is_flyable"]
 
@@ -26,7 +26,7 @@ def factor(
     rotor: number of the rotor, from 1
     threads: number of threads; default: one per processor
     """
-    return _core.factor(problem._core, numbers("points", points), rotor, threads or 0)
+    return _core.factor(in_plane(problem, "factor"), numbers("points", points), rotor, threads or 0)
 
 
 @checked()
@@ -34,7 +34,7 @@ def is_flyable(
     problem: Problem, points: npt.ArrayLike, *, rotor: int = 1, threads: int | None = None
 ) -> npt.NDArray[np.bool_]:
     """Whether the disc of a level rotor keeps its distance from every obstacle. Parameters as of `factor`."""
-    return _core.is_flyable(problem._core, numbers("points", points), rotor, threads or 0)
+    return _core.is_flyable(in_plane(problem, "is_flyable"), numbers("points", points), rotor, threads or 0)
 
 
 class AeroMap:
@@ -66,13 +66,13 @@ class AeroMap:
         stop: a threading.Event; when it ends the work, Stopped is raised
         """
         folder = os.fspath(cache) if cache is not None else ""
-        return cls(_core.AeroMap.build(problem._core, threads or 0, folder, on_progress, stop))
+        return cls(_core.AeroMap.build(in_plane(problem, "AeroMap"), threads or 0, folder, on_progress, stop))
 
     @classmethod
     @checked()
     def read(cls, file: Path, problem: Problem) -> AeroMap:
         """Reads what `write` wrote. Raises InputError unless it is the map of this problem."""
-        return cls(_core.AeroMap.read(os.fspath(file), problem._core))
+        return cls(_core.AeroMap.read(os.fspath(file), in_plane(problem, "AeroMap")))
 
     def write(self, file: Path) -> None:
         """Writes what is filled of the map: all of it, unless a search filled it. Machines of the same byte order can read it; `downwash aeromap build` writes for others."""

@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import checked, numbers
-from .problem import Problem
-from .solution import Solution, StopSignal
+from .problem import Problem, in_plane
+from .solution import Solution, StopSignal, _require_same_family
 
 __all__ = ["Validation", "draw_worlds", "hold", "validate"]
 
@@ -27,7 +27,7 @@ def hold(
     Returns the figures of `downwash aeromap hold --json` (docs/hold.md) as columns: `verdict`, `limit`, the effect of
     the surfaces, the trim (`reference_x_m`, ...) and the stability. What a verdict leaves undefined is NaN.
     """
-    columns, verdicts, limits = _core.hold(problem._core, numbers("points", points), arm_deg, threads or 0)
+    columns, verdicts, limits = _core.hold(in_plane(problem, "hold"), numbers("points", points), arm_deg, threads or 0)
     table: Dict[str, npt.NDArray[Any]] = dict(columns)
     table["verdict"] = np.array(verdicts, dtype=str)
     table["limit"] = np.array(limits, dtype=str)
@@ -100,6 +100,7 @@ def validate(
     on_progress: called with the share of the worlds that is done, by the calling thread
     stop: a threading.Event; when it ends the runs, there are no statistics
     """
+    _require_same_family(problem, solution)
     record, flights = _core.validate(problem._core, solution._core, runs, world, seed, threads or 0, on_progress, stop)
     if flights is None:
         return Validation(record, None)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import checked
 from .aeromap import factor, is_flyable
-from .problem import Problem
+from .problem import Problem, in_plane
 from .solution import Solution
 
 __all__ = ["factor_map", "plan", "scene", "style"]
@@ -24,7 +24,8 @@ style: dict[str, str] = _core.figure_style()
 
 
 def _new_axes(problem: Problem, ax: Any) -> Any:
-    """The axes, over the problem's bounds and to scale."""
+    """The axes, over the problem's bounds and to scale. Raises InputError for a problem in space."""
+    in_plane(problem, "downwash.figures")
     if ax is None:
         import matplotlib.pyplot
 
@@ -83,7 +84,7 @@ def scene(problem: Problem, ax: Any = None) -> Any:
         True: {"label": "obstacle", "facecolor": style["obstacle"], "edgecolor": style["outline"], "zorder": 2},
         False: {"label": "obstacle beside the plane, projected", "fill": False, "linestyle": "--"},
     }
-    outlines = _core.outlines(problem._core)
+    outlines = _core.outlines(in_plane(problem, "downwash.figures"))
     for _, is_cut, rings, lines in outlines:
         for line in lines:
             ax.plot(line[:, 0], line[:, 1], color=style["outline"], linewidth=1)
@@ -136,7 +137,7 @@ def _robot(problem: Problem, x_m: float, z_m: float, pitch_rad: float, arm_rad: 
         forward, up = np.asarray(points, dtype=np.float64).T
         return np.column_stack([x_m + forward * cosine + up * sine, z_m - forward * sine + up * cosine])
 
-    lines = [placed(np.vstack([ring, ring[:1]])) for ring in _core.body_outlines(problem._core)]
+    lines = [placed(np.vstack([ring, ring[:1]])) for ring in _core.body_outlines(in_plane(problem, "downwash.figures"))]
     radius = robot["rotors"]["radius_m"]
     lines += [placed([[x - radius, z], [x + radius, z]]) for x, _, z in robot["rotors"]["positions_m"]]
     joint = placed([robot["arm"]["joint_m"]])[0]

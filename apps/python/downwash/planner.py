@@ -12,7 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import checked, numbers
 from .errors import InputError, ProblemError
-from .problem import Path, Problem, _without_lines, _yaml
+from .problem import Path, Problem, _without_lines, _yaml, in_plane
 from .solution import Columns, Progress, Solution, StopSignal, _teller
 
 __all__ = ["Answer", "Planner", "ReferencePoint", "Start"]
@@ -172,7 +172,7 @@ class Planner:
         cache: Path | None = None,
     ) -> None:
         self._core = _core.Planner(
-            problem._core, threads or 0, stop_at_first, finds_stops, os.fspath(cache) if cache is not None else ""
+            in_plane(problem, "Planner"), threads or 0, stop_at_first, finds_stops, os.fspath(cache) if cache is not None else ""
         )
         # What a change is read with: values beside obstacles and goal that are right.
         whole = problem.to_dict("")

@@ -15,6 +15,7 @@ from .errors import InputError, LocatedError, ProblemError
 __all__ = ["Problem", "explain", "read_problem"]
 
 Path = Union[str, "os.PathLike[str]"]
+_CoreProblem = Union["_core.Problem", "_core.SpaceProblem"]
 _STEP = re.compile(r"([^.\[\]]+)|\[(\d+)\]")
 
 
@@ -57,10 +58,10 @@ def _keys(key: str, value: object) -> list[str]:
     return [key]
 
 
-def _parsed(document: Mapping[str, Any], folder: Path, leaves_out_inapplicable: bool) -> _core.Problem:
+def _parsed(document: Mapping[str, Any], folder: Path, leaves_out_inapplicable: bool) -> _CoreProblem:
     """The problem of a document. Its errors have no lines, which nobody has seen."""
     try:
-        return _core.Problem.parse(_yaml(document), os.path.join(folder, "<dict>"), leaves_out_inapplicable)
+        return _core.parse_problem(_yaml(document), os.path.join(folder, "<dict>"), leaves_out_inapplicable)
     except ProblemError as error:
         raise _without_lines(error) from None
 
@@ -77,11 +78,13 @@ def _without_lines(error: ProblemError) -> ProblemError:
 class Problem:
     """A motion planning problem for an aerial manipulator: robot, scene, start, goals and planner settings.
 
+    It is one in a vertical plane or, where its bounds have `y_m`, one in space.
+
     A problem is checked when it is made and never changes; `replace` makes another one. `problem[key]` is the value of
     a key of problem files, in the units of the file, also within lists: `problem["environment.obstacles[0].name"]`.
     """
 
-    def __init__(self, core: _core.Problem) -> None:
+    def __init__(self, core: _CoreProblem) -> None:
         self._core = core
         self._document: dict[str, Any] | None = None
 
@@ -89,7 +92,7 @@ class Problem:
     @checked()
     def from_text(cls, text: str, folder: Path = "") -> Problem:
         """Reads the text of a problem file. Paths in it are relative to `folder`; messages call it `<text>`."""
-        return cls(_core.Problem.parse(text, os.path.join(folder, "<text>"), False))
+        return cls(_core.parse_problem(text, os.path.join(folder, "<text>"), False))
 
     @classmethod
     @checked()
@@ -172,6 +175,16 @@ class Problem:
         return self._core.file
 
     @property
+    def is_in_space(self) -> bool:
+        """Whether the vehicle flies in space, not in a vertical plane."""
+        return isinstance(self._core, _core.SpaceProblem)
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """Names of the arm's joints: with `_rad` they are columns of plans and flights."""
+        return tuple(self._core.joints)
+
+    @property
     def rotors(self) -> int:
         """How many rotors the robot has."""
         return self._core.rotors
@@ -195,9 +208,19 @@ class Problem:
         return f"<downwash.Problem {self.name} from {self.file}>"
 
 
+def in_plane(problem: Problem, what: str) -> _core.Problem:
+    """The core of a problem in a vertical plane. Raises InputError for one in space, which `what` does not take."""
+    if isinstance(problem._core, _core.SpaceProblem):
+        raise InputError(
+            f"problem: {problem.file}: environment.bounds.y_m makes this a problem in space, and {what} takes problems "
+            "in a vertical plane"
+        )
+    return problem._core
+
+
 def read_problem(file: Path) -> Problem:
     """Reads a problem file and the robot that it refers to. Raises ProblemError with the place of every error."""
-    return Problem(_core.Problem.read(os.fspath(file)))
+    return Problem(_core.read_problem(os.fspath(file)))
 
 
 @checked()

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._arguments import checked
 from .aeromap import AeroMap
+from .errors import InputError
 from .problem import Path, Problem, explain
 
 __all__ = ["Columns", "Flight", "Progress", "Solution", "execute", "read_solution", "solve"]
@@ -81,7 +82,7 @@ class Flight:
 class Solution:
     """The answer to a problem: the plan, the record of the search and the flight of the plan."""
 
-    def __init__(self, core: _core.Solution, problem: Problem) -> None:
+    def __init__(self, core: _core.Solution | _core.SpaceSolution, problem: Problem) -> None:
         self._core = core
         self._record: dict[str, Any] | None = None
         self.problem = problem
@@ -139,7 +140,12 @@ class Solution:
 
     @property
     def map(self) -> AeroMap | None:
-        """The aero map that the search flew in, for the next search in the same world; None if it took none."""
+        """The aero map that the search flew in, for the next search in the same world.
+
+        None if it took none, and of a problem in space.
+        """
+        if isinstance(self._core, _core.SpaceSolution):
+            return None
         core = _core.AeroMap.of_solution(self._core)
         return None if core is None else AeroMap(core)
 
@@ -192,7 +198,8 @@ def solve(
     threads: number of threads, on which the result does not depend; default: one per processor
     stop_at_first: end with the first plan that is accepted
     cache: folder in which the searches' parts of aero maps are kept; default: none
-    map: aero map of the same world: `solution.map` or an AeroMap of the problem; default: a new one
+    map: aero map of the same world: `solution.map` or an AeroMap of the problem; default: a new one. Problems in space
+        have none
     on_progress: called with a Progress ten times a second, by the thread that called `solve`
     stop: a threading.Event
     """
@@ -243,6 +250,16 @@ def read_solution(file: Path, problem: Problem) -> Solution:
     return Solution(_core.read_solution(path, problem._core), problem)
 
 
+def _require_same_family(problem: Problem, solution: Solution) -> None:
+    """Plans in a vertical plane and in space have other axes."""
+    if problem.is_in_space != solution.problem.is_in_space:
+        kinds = {True: "in space", False: "in a vertical plane"}
+        raise InputError(
+            f"the solution is of a problem {kinds[solution.problem.is_in_space]}, and the problem is one "
+            f"{kinds[problem.is_in_space]}"
+        )
+
+
 @checked()
 def execute(
     problem: Problem,
@@ -260,6 +277,7 @@ def execute(
     seed: of the worlds; default: that of the solution
     stop: a threading.Event; when it ends the flight, Stopped is raised
     """
+    _require_same_family(problem, solution)
     flown = Solution(_core.execute(solution._core, problem._core, aero, world, seed, stop), problem)
     flight = flown.flight
     assert flight is not None

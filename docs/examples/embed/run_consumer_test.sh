@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs a build of Downwash into a temporary prefix and uses it from outside: compiles every installed header alone,
-# builds and runs this example plainly and with -march=native, runs OMPL's planners and benchmark on our flights
+# builds and runs these examples plainly and with -march=native, runs OMPL's planners and benchmark on our flights
 # (docs/examples/ompl), flies the missions (docs/examples/mission), and calls the installed program and its completion.
 # Usage: docs/examples/embed/run_consumer_test.sh [build folder, default: build]
 set -euo pipefail
@@ -37,7 +37,7 @@ echo "    ${#headers[@]} headers"
 
 problem=$prefix/share/downwash/problems/bridge_inspection.yaml
 for flags in '' '-march=native'; do
-    echo "the example, built with '${flags:-no flags of its own}'"
+    echo "the examples, built with '${flags:-no flags of its own}'"
     rm -rf "$work/embed"
     {
         cmake -S "$root/docs/examples/embed" -B "$work/embed" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" \
@@ -48,6 +48,7 @@ for flags in '' '-march=native'; do
         exit 1
     }
     "$work/embed/embed"
+    "$work/embed/in_space"
 done
 
 echo "programs whose containers have another layout do not compile, with a reason"

@@ -2,11 +2,13 @@
 
 import d3_licence from "../../licences/d3.txt";
 import three_licence from "../../licences/three.txt";
+import {make_certificate} from "../certificate.js";
 import {make_clock} from "../clock.js";
 import {h} from "../dom.js";
 import {make_foot} from "../foot.js";
 import {make_playback} from "../playback.js";
 import {make_plots} from "../plots.js";
+import {make_search} from "../search.js";
 import {make_theme_switch} from "../theme.js";
 import {make_trouble} from "../trouble.js";
 
@@ -45,7 +47,7 @@ function assemble(page, model, theme) {
               make_figures(model), clock ? make_readout(model, clock) : null, make_hints(clock),
               make_obstacle_table(model)),
             plots ? h("div", {class: "plot-side"}, h("h2", null, "Over time", plots.moment), plots.element) : null),
-          make_judge(model), make_facts(model), make_repeat(model)),
+          make_judge(model), make_certificate(model), make_search(model), make_facts(model), make_repeat(model)),
         make_foot(model.report.version, licences));
     document.title = `${model.report.name} · Downwash`;
     if (clock && model.is_cut_short) {

@@ -107,6 +107,7 @@ export async function build_model(report) {
         start: report.start,
         outcome,
         objective: objective_text(solution.objective),
+        cost_unit: report.cost_unit,
         is_cut_short: data !== null && ["collision", "unstable", "left_flyable_area"].includes(outcome),
         hovers: data ? hovers_of(data, rows, references, report) : [],
         commands: data ? rotor_lines(data, rotors, "cmd_n") : [],

@@ -1,10 +1,11 @@
 // The head of the page: the result, and the key figures of the flight.
 
+import {certificate_sentence} from "../certificate.js";
 import {foreign, h} from "../dom.js";
 import {cost, degrees, meters, number, place, quantity, seconds} from "../format.js";
 import {range_of} from "../numbers.js";
 import {order_list} from "../order_list.js";
-import {outcome_text} from "../words.js";
+import {cause_text, outcome_text} from "../words.js";
 
 const point = (at) => ["x", "y", "z"].map((axis, k) => `${axis}\u00a0${place(at[k])}`).join(", ");
 
@@ -27,6 +28,27 @@ function failure_line(model, how) {
         Number.isFinite(error) ? `; the goal error is ${meters(error)}` : ""}.`;
 }
 
+/** Why a search has no plan that counts. */
+function search_lines({solution, outcome}) {
+    const {planning, certificate, execution, status, interrupted} = solution;
+    const {nearest_approach_m: nearest, obstruction, goal} = planning;
+    const target = goal ? `goal ${goal}` : "the goal";
+    const lines = interrupted ? ["The search was interrupted."] : [];
+    if (status === "approximate") {
+        lines.push(`The page shows ${
+            certificate ? "a plan without a certificate" : `a plan that ends near ${target}`}, which counts as no ` +
+                   `solution.${execution ? ` Its execution ${outcome_text(outcome)}.` : ""}`);
+    }
+    if (Number.isFinite(nearest)) {
+        lines.push(`The vehicle came within ${meters(nearest)} of ${target}.`);
+    }
+    if (obstruction) {
+        const {cause, obstacles = []} = obstruction;
+        lines.push(`What stopped it: ${cause_text(cause)}${obstacles.length > 0 ? ` near ${obstacles.join(", ")}` : ""}.`);
+    }
+    return lines;
+}
+
 /** What the flight did; without one, what the page shows. */
 function result_of(model) {
     const {solution, outcome, data, report} = model;
@@ -38,6 +60,12 @@ function result_of(model) {
             title: "Not planned yet",
             lines: ["The page shows the problem as `downwash check` read it. The vehicle stands at its start."]
         };
+    }
+    if (solution.planning && solution.status !== "solved") {
+        const title = solution.status === "approximate" && solution.certificate ?
+            "A plan was found, but it is not certified" :
+            "No plan within the limits";
+        return {kind: "none", mark: "∅", title, lines: search_lines(model)};
     }
     if (!data) {
         return {kind: "none", mark: "∅", title: "Nothing was flown", lines: []};
@@ -100,10 +128,12 @@ export function make_head({report, solution, goals, robot, joints}, theme_switch
 
 export function make_verdict(model) {
     const {kind, mark, title, lines} = result_of(model), judge = judge_line(model);
+    const certificate = certificate_sentence(model.solution);
     return h(
         "section", {class: `verdict ${kind}`, "aria-labelledby": "verdict-title"},
         h("div", {class: "verdict-text"}, h("span", {class: "verdict-mark", "aria-hidden": "true"}, mark),
           h("div", null, h("h2", {id: "verdict-title"}, title), lines.map((text) => h("p", null, text)),
+            certificate ? h("p", {class: "certificate-line"}, certificate) : null,
             judge ? h("p", {class: "judge-line"}, judge) : null, order_list(model), warnings_list(model))));
 }
 
