@@ -13,7 +13,7 @@ controllers/configuration controllers/control_law controllers/model_inversion co
 controllers/reference_point controllers/reference_segment controllers/rest controllers/space_axes controllers/space_law controllers/space_limits
 controllers/space_reference controllers/space_segment controllers/yaw_mode dynamics/lane_vector
 dynamics/plant dynamics/plant_model dynamics/slipstreams dynamics/space_model dynamics/space_plant dynamics/plant_state simulation/contact_goal simulation/flight_memory simulation/flight_model simulation/flight_sums simulation/goal simulation/noise
-simulation/pose simulation/robot simulation/robot_uncertainty simulation/space_goal simulation/space_robot simulation/space_touch
+simulation/pose simulation/robot simulation/robot_uncertainty simulation/space_carry simulation/space_goal simulation/space_robot simulation/space_touch
 simulation/space_world_description simulation/space_world_parameters simulation/tick_model simulation/uncertainty
 simulation/vehicle_state simulation/world simulation/world_numbers simulation/world_parameters'
 

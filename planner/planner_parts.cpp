@@ -11,7 +11,6 @@
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/space_problem_parameters.hpp"
 #include "downwash/simulation/execution.hpp"
-#include "downwash/simulation/rotor_hubs.hpp"
 
 namespace downwash::planning {
 

@@ -1,13 +1,17 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "downwash/planner/braking_parts.hpp"
-#include "downwash/planner/planner.hpp"
 #include "downwash/planner/planner_model.hpp"
+#include "downwash/planner/solution.hpp"
+#include "downwash/planner/solve_options.hpp"
+#include "downwash/planner/space_solve.hpp"
+#include "downwash/problems/problem_model.hpp"
 
 // What a planner in flight asks of each family. Both have the same functions.
 

@@ -83,10 +83,9 @@ SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model, c
         result.planning.setup_wall_s = setup_wall_s;
         result.planning.map_wall_s = map_wall_s;
         if (result.plan && !(result.execution && result.status == Status::solved)) {
-            planning::DirectFlightOf<Space> flight =
-                planning::fly_directly(*model, start_state(*model, problem.start), *result.plan,
-                                       goals_of(in_order(problem, result.order)), problem.energy_budget_j,
-                                       planning::end_of_last_flight(options.stop));
+            planning::DirectFlightOf<Space> flight = planning::fly_directly(
+                *model, start_state(*model, problem.start), *result.plan, goals_of(in_order(problem, result.order)),
+                problem.energy_budget_j, planning::end_of_last_flight(options.stop));
             result.execution = std::move(flight.execution);
             result.flight_wall_s = flight.wall_s;
         }

@@ -423,8 +423,8 @@ const FlownFleetOf<Space>& SpaceProblemWorlds::screened(const CourseOf<Space>& c
 
 Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const SpacePlan& part,
                                        const StopCondition& is_over, const WorldCounter& counter) {
-    // Until a flight has failed as a whole, a part only has to do as well as the whole must. To tell that each keeps its
-    // share of the failures takes thousands of worlds, and most parts take next to nothing of it.
+    // Until a flight has failed as a whole, a part only has to do as well as the whole must. To tell that each keeps
+    // its share of the failures takes thousands of worlds, and most parts take next to nothing of it.
     constexpr double first_confidence = 0.5, confidence = 0.8;
     const bool is_first = before.attempts == 0;
     const std::size_t visited = before.goals.size();
@@ -441,9 +441,8 @@ Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const Spac
         return samples;
     };
     const double share = problem_.planner.max_failure_probability / (is_first ? 1 : static_cast<double>(goals()));
-    Certificate certificate =
-        tested({first_screening, fly}, is_over, counter,
-               CertificateRecord(share, is_first ? first_confidence : confidence, 1, visited));
+    Certificate certificate = tested({first_screening, fly}, is_over, counter,
+                                     CertificateRecord(share, is_first ? first_confidence : confidence, 1, visited));
     if (certificate.is_given) {
         screened_[visited + 1] = std::move(after);
     }

@@ -15,8 +15,8 @@
 #include "downwash/controllers/yaw_mode.hpp"
 #include "downwash/problems/problem.hpp"
 #include "downwash/scene/shapes.hpp"
+#include "downwash/simulation/space_carry.hpp"
 #include "downwash/simulation/space_goal.hpp"
-#include "downwash/simulation/space_loop.hpp"
 #include "downwash/simulation/space_robot.hpp"
 #include "downwash/simulation/uncertainty.hpp"
 

@@ -103,17 +103,6 @@ void judge_goals(const SpaceGoalRule& rule, const SpaceWorld& world, double tick
 
 }  // namespace
 
-SpacePose among_obstacles(const SpaceMotion& motion, const SpaceWorld& world) noexcept {
-    SpacePose pose;
-    pose.position_m = among_obstacles(motion.position_m, world);
-    const lane::SinCos half = lane::sin_cos(-0.5 * world.scene_yaw_rad);
-    const auto& q = motion.attitude;
-    pose.attitude = {half.cosine * q[0] - half.sine * q[3], half.cosine * q[1] - half.sine * q[2],
-                     half.cosine * q[2] + half.sine * q[1], half.cosine * q[3] + half.sine * q[0]};
-    std::copy(motion.joints_rad.begin(), motion.joints_rad.end(), pose.joints_rad.begin());
-    return pose;
-}
-
 SpaceFlight fly(const SpaceRobot& robot, const SpacePlan& plan, const SpaceMotion& start,
                 const SpaceFlightSettings& settings) {
     assert(!plan.reference.empty() && plan.joints == robot.joints());

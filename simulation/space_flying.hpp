@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "downwash/base/infinity.hpp"
-#include "downwash/simulation/space_flight.hpp"
+#include "downwash/simulation/space_flight_record.hpp"
 #include "downwash/simulation/space_touch_flight.hpp"
 
 // One vehicle in space, tick by tick, under the rules of fly(). Private: not installed.

@@ -354,7 +354,7 @@ class SpaceLane : public LaneFlight<SpaceFlightJob, SpaceFlightChain> {
     SpaceChecker::FreeMotion free_;                                     ///< how far from there none can be
     double min_clearance_m_ = std::numeric_limits<double>::infinity();  ///< since the job began, when wanted
     SpaceGoalHover hover_;                                              ///< of a leg that is judged
-    double margin_m_ = 0;  ///< of the job
+    double margin_m_ = 0;                                               ///< of the job
 };
 
 }  // namespace downwash::simulation

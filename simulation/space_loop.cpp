@@ -1,10 +1,12 @@
 #include "downwash/simulation/space_loop.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <variant>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/lane_math.hpp"
 #include "downwash/simulation/space_vehicle.hpp"
 
 #ifndef DOWNWASH_MAX_JOINTS
@@ -27,6 +29,17 @@ int memory_size_of(int joints, std::integer_sequence<int, n...> /*all*/) {
 }
 
 }  // namespace
+
+SpacePose among_obstacles(const SpaceMotion& motion, const SpaceWorld& world) noexcept {
+    SpacePose pose;
+    pose.position_m = among_obstacles(motion.position_m, world);
+    const lane::SinCos half = lane::sin_cos(-0.5 * world.scene_yaw_rad);
+    const auto& q = motion.attitude;
+    pose.attitude = {half.cosine * q[0] - half.sine * q[3], half.cosine * q[1] - half.sine * q[2],
+                     half.cosine * q[2] + half.sine * q[1], half.cosine * q[3] + half.sine * q[0]};
+    std::copy(motion.joints_rad.begin(), motion.joints_rad.end(), pose.joints_rad.begin());
+    return pose;
+}
 
 int memory_size(const SpaceLaw& law, int joints) noexcept {
     return std::visit(

@@ -12,6 +12,8 @@
 #include "downwash/controllers/space_reference.hpp"
 #include "downwash/dynamics/plant.hpp"
 #include "downwash/dynamics/space_contact.hpp"
+#include "downwash/scene/space_pose.hpp"
+#include "downwash/simulation/space_carry.hpp"
 #include "downwash/simulation/space_effect.hpp"
 #include "downwash/simulation/space_flight_state.hpp"
 #include "downwash/simulation/space_robot.hpp"
@@ -34,13 +36,8 @@ struct SpaceMotion {
     friend bool operator==(const SpaceMotion&, const SpaceMotion&) = default;
 };
 
-/// What a vehicle in flight carries besides its motion.
-struct SpaceCarry {
-    /// Free-air thrust that the rotors' lag has reached [N], of each rotor; empty: they carry the weight.
-    std::vector<double> rotor_thrust_n;
-    /// Numbers of the control law's memory, in the order of its Memory; empty: that of a law that has come to rest.
-    std::vector<double> controller_memory;
-};
+/// Where obstacles in their nominal places see a vehicle.
+[[nodiscard]] DOWNWASH_EXPORT SpacePose among_obstacles(const SpaceMotion& motion, const SpaceWorld& world) noexcept;
 
 /// How many numbers a law remembers that flies a vehicle with so many joints.
 [[nodiscard]] DOWNWASH_EXPORT int memory_size(const SpaceLaw& law, int joints) noexcept;

@@ -24,8 +24,12 @@ Replanned fly_rest(const ReplanArguments& given, const TakeoverOf<planning::Spac
     SpaceExecutionSettings settings;
     settings.goals = &left;
     const SpaceFlight rest = now.execute(from.rest, settings);
-    return {given.plan,   from.tick,        static_cast<double>(from.tick) * from.rest.tick_s,
-            rest.outcome, cost_of(rest, now.problem().planner.objective), {}};
+    return {given.plan,
+            from.tick,
+            static_cast<double>(from.tick) * from.rest.tick_s,
+            rest.outcome,
+            cost_of(rest, now.problem().planner.objective),
+            {}};
 }
 
 }  // namespace
