@@ -4,7 +4,6 @@ from .girder_bay import BOTTOM_FLANGE, CHORD, CLEARANCE, DESIGN_EXAMPLE, GIRDERS
 from .girder_bay import Bay, add_road, new_problem, source_of_girders
 from .problem_text import mission, view_of
 
-HOLD = 2  # seconds for a picture
 FOLDED = (-75, 150)  # clear of the rotors, also with a heavier arm
 USABLE = 0.8  # of a battery's energy
 BAY_BATTERY_WH = 355  # 6S, 16 Ah
@@ -21,7 +20,7 @@ def gusset_view(bay, frame, number, at_left, z):
     girder_y = bay.girders_y[number if at_left else number + 1]
     y = girder_y + side * (WEB_THICKNESS / 2 + GUSSET[1] / 2)
     x = bay.frames_x[frame] - CHORD / 2 - GUSSET[0]
-    return view_of((x, y, z), 0.3, 0.8, (1, -side, 0), 30, HOLD)
+    return view_of((x, y, z), 0.3, 0.8, (1, -side, 0), 30)
 
 
 def of_the_bay():
@@ -70,7 +69,7 @@ def of_a_girder():
     problem.start = {"x_m": -3, "y_m": -2, "z_m": 3, "yaw_deg": 0, "joints_deg": FOLDED}
     middle = (low + high) / 2
     places = [(-2, 1), (1.5, -1), (0, 1), (2.5, 1), (-1, -1)]
-    targets = [view_of((x, y * WEB_THICKNESS / 2, middle), 0.6, 1.5, (0, -y, 0), 40, HOLD) for x, y in places]
+    targets = [view_of((x, y * WEB_THICKNESS / 2, middle), 0.6, 1.5, (0, -y, 0), 40) for x, y in places]
     problem.goal = mission(targets, problem.start, usable_joules(GIRDER_BATTERY_WH))
     return problem
 

@@ -117,10 +117,10 @@ def tool_at(position, direction, direction_tolerance_deg=15):
     return goal("end_effector", values | {"direction_tolerance_deg": direction_tolerance_deg})
 
 
-def view_of(target, nearest, farthest, direction, cone_deg, hold_s=5):
+def view_of(target, nearest, farthest, direction, cone_deg):
     """The goal of a camera."""
     values = {"target_m": target, "distance_m": (nearest, farthest), "direction": direction}
-    return goal("camera", values | {"view_cone_deg": cone_deg}, hold_s)
+    return goal("camera", values | {"view_cone_deg": cone_deg})
 
 
 def one(lines):
