@@ -183,7 +183,8 @@ void SpaceFlying::tick(const SpacePoint& next) {
 }
 
 SpaceTouchRecord SpaceFlying::touch(const SpaceTouch& touch) {
-    SpaceTouchFlight course(robot_, touch, settings_.world, reference_);
+    const SpacePoint hover = reference_;
+    SpaceTouchFlight course(robot_, touch, settings_.world, hover);
     touch_ = &course;
     reference_ = course.reference();
     while (!course.is_over() && rejection_ == Rejection::none) {
@@ -203,8 +204,9 @@ SpaceTouchRecord SpaceFlying::touch(const SpaceTouch& touch) {
     touch_ = nullptr;
     contact_force_n_ = 0;
     const SpaceTouchRecord record = course.record(rejection_ == Rejection::none);
-    if (rejection_ == Rejection::none && !record.is_met) {
-        rejection_ = Rejection::goal_missed;
+    if (rejection_ == Rejection::none) {
+        reference_ = hover;
+        rejection_ = record.is_met ? Rejection::none : Rejection::goal_missed;
     }
     return record;
 }
