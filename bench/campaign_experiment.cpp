@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <new>
 #include <optional>
 #include <utility>
@@ -43,21 +42,11 @@ void fill(Run& run, const SearchRecord& record) {
     }
 }
 
-FlightFigures figures_of(const Execution& flight, const CostFunction& objective) {
-    return {flight.outcome,  cost_of(flight, objective), flight.energy_j,    flight.duration_s,
-            flight.length_m, flight.min_clearance_m,     flight.goal_error_m};
+double goal_error_of(const Execution& flight) {
+    return flight.goal_error_m;
 }
-
-/// Flights in space do not sum up their length.
-FlightFigures figures_of(const SpaceFlight& flight, const CostFunction& objective) {
-    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-    return {flight.outcome,
-            cost_of(flight, objective).value_or(unknown),
-            flight.energy_j,
-            flight.duration_s,
-            unknown,
-            flight.min_clearance_m,
-            worst_goal_error_m(flight)};
+double goal_error_of(const SpaceFlight& flight) {
+    return worst_goal_error_m(flight);
 }
 
 /// @param solution a Solution or a SpaceSearchResult   @param objective by which flights cost
@@ -74,7 +63,9 @@ void fill(Run& run, const Found& solution, const CostFunction& objective) {
         return;
     }
     run.cost = solution.cost;
-    run.flight = figures_of(solution.execution.value(), objective);
+    const auto& flight = solution.execution.value();
+    run.flight = FlightFigures{flight.outcome,  cost_of(flight, objective), flight.energy_j,      flight.duration_s,
+                               flight.length_m, flight.min_clearance_m,     goal_error_of(flight)};
 }
 
 /// @param search is given the run, and returns the plan that solves the problem, if there is one
@@ -161,14 +152,21 @@ class SpaceExperiment : public CampaignExperiment {
                 SpaceSearchResult found =
                     solve(std::make_shared<const SpaceProblemModel>(problem), options_of<SpaceSolveOptions>(setup_));
                 fill(run, found, problem.planner.objective);
-                return found.status == Status::solved ? std::move(found.plan) : std::nullopt;
+                return found.status == Status::solved ? std::optional(OrderedPlan{*found.plan, found.order})
+                                                      : std::nullopt;
             },
-            [&](const SpacePlan& plan) {
-                return evaluation_ ? evaluation_->evaluate(plan, setup_.stop) : std::nullopt;
+            [&](const OrderedPlan& solved) {
+                return evaluation_ ? evaluation_->evaluate(solved.plan, solved.order, setup_.stop) : std::nullopt;
             });
     }
 
  private:
+    /// A plan, and in which order it visits targets.
+    struct OrderedPlan {
+        SpacePlan plan;
+        std::optional<VisitOrder> order;
+    };
+
     ExperimentSetup setup_;
     std::shared_ptr<const SpacePlanEvaluation> evaluation_;
 };

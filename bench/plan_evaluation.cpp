@@ -79,9 +79,9 @@ WorldFigures PlanEvaluation::evaluate(const Plan& plan) {
 }
 
 SpacePlanEvaluation::SpacePlanEvaluation(SpaceProblem problem, std::uint64_t worlds)
-    : model_(std::move(problem)), world_count_(worlds) {
-    const SpaceRobot& robot = model_.problem().robot;
-    const Uncertainty& uncertainty = model_.problem().uncertainty.value();
+    : problem_(std::move(problem)), world_count_(worlds) {
+    const SpaceRobot& robot = problem_.robot;
+    const Uncertainty& uncertainty = problem_.uncertainty.value();
     for (std::uint64_t i = 1; i <= worlds; ++i) {
         worlds_.push_back(draw_space_world(uncertainty, robot, evaluation_seed, i));
     }
@@ -95,15 +95,17 @@ SpacePlanEvaluation::SpacePlanEvaluation(SpaceProblem problem, std::uint64_t wor
     }
 }
 
-std::optional<WorldFigures> SpacePlanEvaluation::evaluate(const SpacePlan& plan, const std::stop_token& stop) const {
+std::optional<WorldFigures> SpacePlanEvaluation::evaluate(const SpacePlan& plan, const std::optional<VisitOrder>& order,
+                                                          const std::stop_token& stop) const {
+    const SpaceProblemModel model(in_order(problem_, order));
     std::vector<bool> fails;
     try {
         for (const SpaceWorld& world : worlds_) {
             SpaceExecutionSettings settings;
-            settings.aero = model_.problem().aero.enabled;
+            settings.aero = problem_.aero.enabled;
             settings.world = world;
             settings.is_over = [&stop] { return stop.stop_requested(); };
-            fails.push_back(model_.execute(plan, settings).outcome != Outcome::ok);
+            fails.push_back(model.execute(plan, settings).outcome != Outcome::ok);
         }
     } catch (const WorkStopped&) {
         return std::nullopt;

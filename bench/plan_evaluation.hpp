@@ -12,6 +12,7 @@
 #include "downwash/bench/campaign_data.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/space_problem_model.hpp"
+#include "downwash/problems/visit_order.hpp"
 
 namespace downwash::bench {
 
@@ -56,11 +57,13 @@ class SpacePlanEvaluation {
     /// @param problem has an uncertainty   @param worlds how many: indices 1 to `worlds` of evaluation_seed
     SpacePlanEvaluation(SpaceProblem problem, std::uint64_t worlds);
 
-    /// @param plan through all goals of the problem   @return nothing if it was stopped
-    [[nodiscard]] std::optional<WorldFigures> evaluate(const SpacePlan& plan, const std::stop_token& stop) const;
+    /// @param plan through all goals of the problem   @param order in which it visits targets, if the problem has any
+    /// @return nothing if it was stopped
+    [[nodiscard]] std::optional<WorldFigures> evaluate(const SpacePlan& plan, const std::optional<VisitOrder>& order,
+                                                       const std::stop_token& stop) const;
 
  private:
-    SpaceProblemModel model_;
+    SpaceProblem problem_;
     std::uint64_t world_count_;
     std::vector<std::string> parameters_;  ///< parameters that are not exact
     std::vector<SpaceWorld> worlds_;       ///< those drawn; then each parameter at its low and its high quantile

@@ -23,14 +23,13 @@ struct CoreSpaceSolution {
     SpaceSolution solution;
 };
 
-/// @throws InputError if the plan is of another robot, on other control ticks, or begins elsewhere than the problem
-void require_fit(const SpaceProblem& problem, const SpacePlan& plan);
-
 /// A callback of a user with what a search tells; it may be None. Both outlive the search.
 [[nodiscard]] std::function<void(const Progress&)> telling(Attendance& attendance, const py::object& on_progress);
 
 /// A problem with its goals in the order in which a plan visits them.
 /// @throws InputError if the plan is of another problem: of other targets, from another start or on other control ticks
 [[nodiscard]] Problem as_visited(const Problem& problem, const Solution& solution);
+/// The same in space. @throws InputError also for a plan of a robot with other joints   @pre there is a plan
+[[nodiscard]] SpaceProblem as_visited(const SpaceProblem& problem, const SpaceSolution& solution);
 
 }  // namespace downwash::python

@@ -13,6 +13,7 @@
 #include "downwash/controllers/space_axes.hpp"
 #include "downwash/planner/space_solve.hpp"
 #include "downwash/problems/space_problem_writer.hpp"
+#include "downwash/problems/visit_order.hpp"
 #include "downwash/python/columns.hpp"
 #include "downwash/python/core_solution.hpp"
 #include "downwash/results/run_folder.hpp"
@@ -65,7 +66,7 @@ CoreSpaceSolution executed_in_space(const CoreSpaceSolution& of, const std::shar
     if (!of.solution.plan) {
         throw_input_error("has no plan to be executed", "the solution");
     }
-    require_fit(problem->problem(), *of.solution.plan);
+    const SpaceProblem visited = as_visited(problem->problem(), of.solution);
     CoreSpaceSolution flown{problem, of.solution};
     SpaceSolution& solution = flown.solution;
     solution.aero = aero;
@@ -83,7 +84,7 @@ CoreSpaceSolution executed_in_space(const CoreSpaceSolution& of, const std::shar
     }
     solution.execution = interruptible(stop, [&](Attendance& attendance) {
         settings.is_over = [token = attendance.token()] { return token.stop_requested(); };
-        return problem->model()->execute(*solution.plan, settings);
+        return SpaceProblemModel(visited).execute(*solution.plan, settings);
     });
     return flown;
 }
@@ -144,7 +145,8 @@ bool is_nearly(double a, double b) {
 
 }  // namespace
 
-void require_fit(const SpaceProblem& problem, const SpacePlan& plan) {
+SpaceProblem as_visited(const SpaceProblem& problem, const SpaceSolution& solution) {
+    const SpacePlan& plan = *solution.plan;
     if (plan.joints != problem.robot.joints()) {
         throw_input_error("is a plan for a robot with " + std::to_string(plan.joints) +
                               " joints, and the problem's has " + std::to_string(problem.robot.joints()),
@@ -162,6 +164,14 @@ void require_fit(const SpaceProblem& problem, const SpacePlan& plan) {
         !std::equal(start.joints_rad.begin(), start.joints_rad.end(), first + space::first_joint, is_nearly)) {
         throw_input_error("is a plan that begins elsewhere than the problem", "the solution");
     }
+    const auto fits = [&problem](const Visit& visit) {
+        return visit.target < problem.goals.size() &&
+               (!visit.alternative || *visit.alternative < problem.goals[visit.target].any_of.size());
+    };
+    if (solution.order && !(problem.in_any_order && std::ranges::all_of(solution.order->visits, fits))) {
+        throw_input_error("is a plan of other targets than the problem has", "the solution");
+    }
+    return in_order(problem, solution.order);
 }
 
 void bind_space(py::module_& module) {

@@ -133,12 +133,12 @@ py::tuple validate_in_space(const std::shared_ptr<CoreSpaceProblem>& problem, co
                             const py::object& stop) {
     const SpaceProblem& flown = problem->problem();
     check_request(of.solution.plan.has_value(), runs, runs > 0 || world, flown.uncertainty.has_value());
-    require_fit(flown, *of.solution.plan);
+    const SpaceProblem visited = as_visited(flown, of.solution);
     const std::uint64_t seed = asked_seed.value_or(of.solution.seed);
     const SpacePlan& plan = *of.solution.plan;
     judge::SpaceJudgedFlight flight;
     const std::optional<judge::WorldRuns> worlds = interruptible(stop, [&](Attendance& attendance) {
-        const judge::SpacePlanJudge judge(flown);
+        const judge::SpacePlanJudge judge(visited);
         flight = judge.fly(
             plan, true,
             world ? std::optional(draw_space_world(*flown.uncertainty, flown.robot, seed, *world)) : std::nullopt);

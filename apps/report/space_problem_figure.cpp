@@ -1,5 +1,7 @@
 #include "downwash/report/space_problem_figure.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

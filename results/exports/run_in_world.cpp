@@ -162,7 +162,7 @@ RunInWorld in_world(const SpaceRunRecord& run) {
                     .turns = true,
                     .has_touch = std::ranges::any_of(problem.goals, has_touch)};
     if (run.plan) {
-        seen.plan = way_of(*run.plan, run.flight, problem.goals.back().hold_s,
+        seen.plan = way_of(*run.plan, run.flight, goals_of(in_order(problem, run.order)).back().hold_s,
                            [joints](double t_s, const SpacePoint& point) { return setpoint_of(t_s, point, joints); });
     }
     seen.start = pose_of(start_motion(problem.start));

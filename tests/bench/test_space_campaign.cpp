@@ -88,7 +88,7 @@ TEST_CASE("plans in space are flown in the same worlds as by execute, which no s
     SpaceProblem problem = girder();
     const SpacePlan plan = shipped_plan(problem);
     constexpr std::uint64_t worlds = 3;
-    const auto figures = SpacePlanEvaluation(problem, worlds).evaluate(plan, {});
+    const auto figures = SpacePlanEvaluation(problem, worlds).evaluate(plan, {}, {});
     REQUIRE(figures);
     CHECK(figures->worlds == worlds);
     const SpaceProblemModel model(problem);
@@ -101,7 +101,7 @@ TEST_CASE("plans in space are flown in the same worlds as by execute, which no s
     CHECK(figures->failures == failures);
     // A scene that is 0.4 m lower is in the way of a plan that passes 0.25 m below the girder.
     problem.uncertainty->scene_z_m = downwash::Spread::over(-0.4, -0.4);
-    const auto lower = SpacePlanEvaluation(problem, worlds).evaluate(plan, {});
+    const auto lower = SpacePlanEvaluation(problem, worlds).evaluate(plan, {}, {});
     CHECK(lower->failures == worlds);
     const auto alone = std::ranges::find(lower->alone, "aero.scene_offset_m.z", &ParameterFlights::parameter);
     REQUIRE(alone != lower->alone.end());
@@ -112,19 +112,20 @@ TEST_CASE("plans in space are flown in the same worlds as by execute, which no s
           static_cast<std::ptrdiff_t>(lower->alone.size()));
     std::stop_source stop;
     stop.request_stop();
-    CHECK_FALSE(SpacePlanEvaluation(problem, worlds).evaluate(plan, stop.get_token()).has_value());
+    CHECK_FALSE(SpacePlanEvaluation(problem, worlds).evaluate(plan, {}, stop.get_token()).has_value());
 }
 
 TEST_CASE("what a campaign cannot plan in space is left out for all, with the reason") {
     ReadCampaign read = mixed_campaign(1);
-    read.campaign.algorithms = {"rrt-star", "rrt"};
+    read.campaign.parameters = {{}, {{"passage_share", 0.2}}};
     const CampaignPlan plan = plan_of(read);
     CHECK(plan.planners.size() == 1);
     REQUIRE(plan.left_out.size() == 1);
-    CHECK_THAT(plan.left_out[0], Contains("mp-arm-da rrt") && Contains("planner.algorithm") && Contains("in space"));
+    CHECK_THAT(plan.left_out[0], Contains("mp-arm-da rrt-star") && Contains("passage_share") && Contains("in space"));
     // A problem itself that cannot be planned is a run that says why.
     ReadCampaign holding = mixed_campaign(1);
     std::get<SpaceProblem>(holding.problems[1]).motion.yaw.mode = YawMode::hold;
+    holding.campaign.algorithms = {"rrt"};
     const ScratchFolder folder;
     run_into(folder, holding);
     const CampaignResults results = results_in(folder);

@@ -244,9 +244,9 @@ TEST_CASE("A campaign runs problems in space and reports them, and says where it
     CHECK_THAT(work.succeed("bench report campaign").out, Contains("around_a_girder"));
     std::string text = read_file(girder);
     text.replace(text.find("../robots/"), 10, DOWNWASH_PROBLEMS "/robots/");
-    write_file(work.in_run("holding.yaml"), text + "motion: {yaw: hold}\n");
-    write_file(work.in_run("campaign.yaml"), head + "problems: [holding.yaml]\n");
-    check_rejected(work.run("bench run campaign.yaml --out other"), "holding.yaml:25:");
+    write_file(work.in_run("narrow.yaml"), text + "planner: {parameters: {passage_share: 0.2}}\n");
+    write_file(work.in_run("campaign.yaml"), head + "problems: [narrow.yaml]\n");
+    check_rejected(work.run("bench run campaign.yaml --out other"), "narrow.yaml:25:");
 }
 
 TEST_CASE("The flights of docs/space_files.md go well and print what it quotes") {

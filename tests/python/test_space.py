@@ -150,5 +150,5 @@ def test_what_is_not_for_space_says_so(girder, planned, open_air):
         downwash.execute(open_air, planned)
     with pytest.raises(downwash.InputError, match="begins elsewhere"):
         downwash.execute(girder.replace({"start.x_m": -1.9}), planned)
-    with pytest.raises(downwash.ProblemError, match=r"planner.algorithm is 'rrt'"):
-        downwash.solve(girder, algorithm="rrt")
+    with pytest.raises(downwash.ProblemError, match=r"planner.parameters.passage_share is above 0"):
+        downwash.solve(girder.replace({"planner.parameters.passage_share": 0.2}))
