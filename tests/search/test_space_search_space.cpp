@@ -124,7 +124,7 @@ TEST_CASE(
     SpaceConfiguration there = planning::place_of(f.problem.start);
     there[space::y] = 1.2;
     there[space::yaw] = 1;
-    const SpacePoint from = planning::reference_at(f.problem.start);
+    const SpacePoint from = reference_at(f.problem.start);
     const SpaceSegment segment = flights.fastest_segment(from, at_rest(there));
     std::vector<planning::FleetJobOf<planning::Space>> jobs{flights.job({start}, 0, {{segment}})};
     flights.fly(jobs);
