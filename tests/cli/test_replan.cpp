@@ -124,8 +124,10 @@ TEST_CASE("replan plans again in space, from a vehicle in motion") {
     const nlohmann::json solved =
         work.json("solve girder.yaml --max-iterations 400 --time-limit 200 --stop-at-first --out first");
     CHECK(solved.at("stops").at("moments").size() > 5);
-    const nlohmann::json& knot = middle_knot(solved);
-    const std::string at = "--after=" + knot.at("t_s").dump();
+    // Half a second before a knot, where the first plan may rest.
+    const auto tick = static_cast<std::size_t>(std::llround(middle_knot(solved).at("t_s").get<double>() / 0.01)) - 50;
+    const auto row = rows_of(work.text("first/trajectory.csv")).at(tick);
+    const std::string at = "--after=" + row.at("t_s");
     const auto lower = [&](double by_m) {
         return replaced(text, "center_m: [0, 0, 3.42]", "center_m: [0, 0, " + std::to_string(3.42 - by_m) + "]");
     };
@@ -138,31 +140,26 @@ TEST_CASE("replan plans again in space, from a vehicle in motion") {
         CHECK(again.at("status") == "solved");
         const auto& from = again.at("replanned");
         CHECK(from.at("plan") == "first");
-        CHECK(from.at("t_s") == knot.at("t_s"));
+        CHECK(from.at("t_s").get<double>() == Approx(std::stod(row.at("t_s"))));
         CHECK(from.at("rest").at("outcome").is_string());
         // Both plans join: with the same reference, and with the vehicle where the first flight has it.
-        const auto& first_knot = again.at("plan").at("reference").at(0);
-        double speed = 0;
-        for (const auto& [key, value] : knot.items()) {
-            if (key != "t_s") {
-                CHECK(first_knot.at(key).get<double>() == Approx(value.get<double>()).margin(1e-9));
-            }
+        const auto start = rows_of(work.text("again/trajectory.csv")).front();
+        double speed_m_s = 0;
+        for (const char* key :
+             {"ref_x_m", "ref_y_m", "ref_z_m", "ref_yaw_rad", "ref_joint_2_rad", "x_m", "y_m", "z_m", "qw", "qx", "qy",
+              "qz", "joint_1_rad", "vx_m_s", "vy_m_s", "vz_m_s", "wy_rad_s", "joint_3_rate_rad_s"}) {
+            CAPTURE(key);
+            CHECK(std::stod(start.at(key)) == Approx(std::stod(row.at(key))).margin(1e-9));
         }
         for (const char* key : {"vx_m_s", "vy_m_s", "vz_m_s"}) {
-            speed += std::abs(knot.at(key).get<double>());
+            speed_m_s += std::abs(std::stod(start.at(key)));
         }
-        CHECK(speed > 0.01);  // it was on its way
-        const auto tick = static_cast<std::size_t>(std::llround(knot.at("t_s").get<double>() / 0.01));
-        const auto row = rows_of(work.text("first/trajectory.csv")).at(tick);
-        const auto start = rows_of(work.text("again/trajectory.csv")).front();
-        for (const char* key : {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz", "joint_1_rad", "vx_m_s", "wy_rad_s",
-                                "joint_3_rate_rad_s", "rotor_1_cmd_n", "joint_1_torque_nm"}) {
-            CAPTURE(key);
-            CHECK(std::stod(start.at(key)) == Approx(std::stod(row.at(key))).margin(1e-6));
-        }
+        CHECK(speed_m_s > 0.05);  // it was on its way
+        // What its controller saw a delay before, and so what it commands, is all that differs.
+        CHECK(std::stod(start.at("rotor_1_cmd_n")) == Approx(std::stod(row.at("rotor_1_cmd_n"))).epsilon(0.02));
         CHECK_THAT(work.text("again/effective.yaml"), Contains("controller_memory") && Contains("body_rates_rad_s"));
         // The run stands for itself, and an independent judge agrees.
-        work.succeed("validate again --quiet");
+        work.succeed("validate again/effective.yaml --plan again --quiet");
     }
     SECTION("and says where it starts and how the plans join, the same each time") {
         const Result told =
@@ -176,12 +173,11 @@ TEST_CASE("replan plans again in space, from a vehicle in motion") {
         check_rejected(work.run("replan girder.yaml --plan first --after=-1"), "--after is -1: expected 0 to ");
         check_rejected(work.run("replan girder.yaml --plan first --out first", at), "holds the plan itself");
         check_rejected(work.run("replan girder.yaml --plan nowhere", at), "nowhere");
-        const double z_m = knot.at("z_m").get<double>();
         write_file(work.in_run("blocked.yaml"),
                    replaced(text, "  obstacles:\n",
                             "  obstacles:\n    - {name: crate, box: {size_m: [0.2, 0.2, 0.2], center_m: [" +
-                                std::to_string(knot.at("x_m").get<double>()) + ", " +
-                                std::to_string(knot.at("y_m").get<double>()) + ", " + std::to_string(z_m) + "]}}\n"));
-        check_rejected(work.run("replan blocked.yaml --plan first", at), "start: is in collision");
+                                row.at("x_m") + ", " + row.at("y_m") + ", " + row.at("z_m") + "]}}\n"));
+        check_rejected(work.run("replan blocked.yaml --plan first", at),
+                       "start is in collision with the obstacle 'crate'");
     }
 }

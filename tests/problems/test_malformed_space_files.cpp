@@ -104,10 +104,10 @@ const Edit problem_edits[] = {
     {"joints_deg: [20, -10]", "attitude: [1e-170, 0, 0, 0]",
      "9:57: start.attitude has no direction: expected a quaternion [w, x, y, z]; [1, 0, 0, 0] is level"},
     {"joints_deg: [20, -10]", "rotor_thrust_n: [9], controller_memory: [1, 2]",
-     "9:63: start.rotor_thrust_n has 1 numbers: expected 4, one for each rotor\n9:86: start.controller_memory has 2 "
+     "9:63: start.rotor_thrust_n has 1 numbers: expected 4, one for each rotor\n9:87: start.controller_memory has 2 "
      "numbers: expected 25, as many as robot.controller remembers"},
     {"joints_deg: [20, -10]", "reference: {position: [0, 0, 2, 0, 0, 0], velocity: [0, 0], acceleration: [0]}",
-     "9:57: start.reference.velocity has 2 numbers: expected 6, one for each of x, y, z, yaw and the joints\n9:57: "
+     "9:99: start.reference.velocity has 2 numbers: expected 6, one for each of x, y, z, yaw and the joints\n9:121: "
      "start.reference.acceleration has 1 numbers: expected 6, one for each of x, y, z, yaw and the joints"},
     {"joints_deg: [20, -10]", "velocity_m_s: [3, 0, 4]",
      "9:61: start.velocity_m_s makes a start speed of 5 m/s: expected at most motion.max_speed_m_s, 2"},
