@@ -179,13 +179,11 @@ SpaceJudgedFlight SpaceJudge::fly(const SpacePlan& plan, const SpaceFlightCondit
             const SpacePlant touched(vehicle, surfaces, std::nullopt, &surface);
             loop.fly_with(touched);
             TouchCourse course = course_of(*touch, shared.robot);
-            SpaceTouchReference reference(shared.robot, *touch, now);
             while (goes_on && !course.is_over()) {
                 const bool is_holding = course.is_holding();
-                loop.next(flown++, reference.at(course), course.is_at_surface());
-                reference.next(course, loop.state().contact_n);
+                loop.next(flown++, reference_of(course, *touch, now), course.is_at_surface());
                 course.next(loop.state().contact_n);
-                goes_on = umpire.sees_touch(loop, reference.at(course), surface, is_holding);
+                goes_on = umpire.sees_touch(loop, reference_of(course, *touch, now), surface, is_holding);
             }
             loop.fly_with(plant);
             stay->touch = umpire.touch(*touch, course.hold());

@@ -95,36 +95,13 @@ TouchCourse course_of(const SpaceTouch& touch, const SpaceRobot& robot) {
             1 / robot.controller.rate_hz};
 }
 
-SpaceTouchReference::SpaceTouchReference(const SpaceRobot& robot, const SpaceTouch& touch, const SpacePoint& hover)
-    : robot_(robot), touch_(touch), hover_(hover) {
-    const SpaceVehicle vehicle = vehicle_in(SpaceWorld{}, robot);
-    const Eigen::Map<const Vector3d> position_m(hover.position);
-    const auto joints = vehicle.joint_count();
-    const SpaceCoordinates level{position_m,
-                                 Eigen::Quaterniond(Eigen::AngleAxisd(hover.position[space::yaw], Vector3d::UnitZ())),
-                                 Vector3d::Zero(),
-                                 Vector3d::Zero(),
-                                 Eigen::Map<const Eigen::VectorXd>(hover.position + space::first_joint, joints),
-                                 Eigen::VectorXd::Zero(joints)};
-    lever_m_ = SpaceTouchSurface(touch, SpaceWorld{}).middle_m(vehicle, bodies_at(vehicle, level)) - position_m;
-}
-
-SpacePoint SpaceTouchReference::at(const TouchCourse& course) const {
-    const Vector3d out = vector_of(touch_.normal);
-    const Vector3d thrust_n = Vector3d(0, 0, robot_.mass_kg() * standard_gravity_m_s2) - smooth_n_ * out;
-    const Vector3d moved_m = Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), thrust_n) * lever_m_ - lever_m_;
-    const Vector3d along_m = moved_m - moved_m.dot(out) * out;
-    SpacePoint point = hover_;
+SpacePoint reference_of(const TouchCourse& course, const SpaceTouch& touch, SpacePoint from) {
     for (int axis = 0; axis < 3; ++axis) {
-        point.position[axis] -= along_m[axis] + course.beyond_m() * out[axis];
-        point.velocity[axis] = -course.speed_m_s() * out[axis];
+        const double out = touch.normal[static_cast<std::size_t>(axis)];
+        from.position[axis] -= course.beyond_m() * out;
+        from.velocity[axis] = -course.speed_m_s() * out;
     }
-    return point;
-}
-
-void SpaceTouchReference::next(const TouchCourse& course, double force_n) {
-    const double share = std::min(1.0, 4 * course.rate_1_s() / robot_.controller.rate_hz);
-    smooth_n_ += share * (force_n - smooth_n_);
+    return from;
 }
 
 }  // namespace downwash::judge

@@ -42,23 +42,7 @@ class SpaceTouchSurface {
 /// The course of a touch by a robot. @pre touch outlives it
 [[nodiscard]] DOWNWASH_EXPORT TouchCourse course_of(const SpaceTouch& touch, const SpaceRobot& robot);
 
-/// The reference of a touch: along the normal of the surface and, as the vehicle leans into the surface, aside.
-class SpaceTouchReference {
- public:
-    /// @param hover reference of the hover before, at rest   @pre robot and touch outlive it
-    SpaceTouchReference(const SpaceRobot& robot, const SpaceTouch& touch, const SpacePoint& hover);
-
-    /// The reference of a tick that follows.
-    [[nodiscard]] SpacePoint at(const TouchCourse& course) const;
-    /// Goes on by a tick. @param force_n mean over it
-    void next(const TouchCourse& course, double force_n);
-
- private:
-    const SpaceRobot& robot_;
-    const SpaceTouch& touch_;
-    SpacePoint hover_;
-    Eigen::Vector3d lever_m_;  ///< from the multirotor to the middle of what touches, at the level hover
-    double smooth_n_ = 0;      ///< force
-};
+/// The reference of a tick that follows. @param from reference of the hover, at rest
+[[nodiscard]] SpacePoint reference_of(const TouchCourse& course, const SpaceTouch& touch, SpacePoint from);
 
 }  // namespace downwash::judge

@@ -19,9 +19,9 @@ constexpr double force_loop_share = 0.4;
 
 TouchCourse::TouchCourse(const TouchDemand& touch, double mass_kg, double answer_1_s2, double tick_s)
     : touch_(touch), tick_s_(tick_s) {
-    rate_1_s_ = force_loop_share * std::sqrt(answer_1_s2);
-    metres_per_newton_ = rate_1_s_ / (mass_kg * answer_1_s2) * tick_s_;
-    settling_s_ = settling_constants / rate_1_s_;
+    const double rate_1_s = force_loop_share * std::sqrt(answer_1_s2);
+    metres_per_newton_ = rate_1_s / (mass_kg * answer_1_s2) * tick_s_;
+    settling_s_ = settling_constants / rate_1_s;
 }
 
 double TouchCourse::speed_m_s() const {

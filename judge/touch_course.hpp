@@ -21,8 +21,6 @@ class TouchCourse {
     [[nodiscard]] double speed_m_s() const;
     [[nodiscard]] bool is_holding() const noexcept { return stage_ == Stage::holding; }
     [[nodiscard]] bool is_over() const noexcept { return stage_ == Stage::over; }
-    /// How fast an error of the force is taken up.
-    [[nodiscard]] double rate_1_s() const noexcept { return rate_1_s_; }
     /// Between the first contact and the last.
     [[nodiscard]] bool is_at_surface() const noexcept {
         return stage_ == Stage::settling || stage_ == Stage::holding || stage_ == Stage::pulling;
@@ -44,7 +42,6 @@ class TouchCourse {
     const TouchDemand& touch_;
     double tick_s_;
     double metres_per_newton_;  ///< How far the reference moves in a tick.
-    double rate_1_s_;
     double settling_s_;
     Stage stage_ = Stage::coming;
     std::int64_t since_ = 0;  ///< ticks in this stage

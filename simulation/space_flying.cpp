@@ -183,8 +183,7 @@ void SpaceFlying::tick(const SpacePoint& next) {
 }
 
 SpaceTouchRecord SpaceFlying::touch(const SpaceTouch& touch) {
-    const SpacePoint hover = reference_;
-    SpaceTouchFlight course(robot_, touch, settings_.world, hover);
+    SpaceTouchFlight course(robot_, touch, settings_.world, reference_);
     touch_ = &course;
     reference_ = course.reference();
     while (!course.is_over() && rejection_ == Rejection::none) {
@@ -204,9 +203,8 @@ SpaceTouchRecord SpaceFlying::touch(const SpaceTouch& touch) {
     touch_ = nullptr;
     contact_force_n_ = 0;
     const SpaceTouchRecord record = course.record(rejection_ == Rejection::none);
-    if (rejection_ == Rejection::none) {
-        reference_ = hover;
-        rejection_ = record.is_met ? Rejection::none : Rejection::goal_missed;
+    if (rejection_ == Rejection::none && !record.is_met) {
+        rejection_ = Rejection::goal_missed;
     }
     return record;
 }

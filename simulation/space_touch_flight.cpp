@@ -5,7 +5,6 @@
 #include <variant>
 
 #include "downwash/base/lane_math.hpp"
-#include "downwash/simulation/space_configuration.hpp"
 #include "downwash/simulation/space_touch_place.hpp"
 #include "downwash/simulation/space_world.hpp"
 
@@ -50,12 +49,6 @@ double stiffness_1_s2(const SpaceLaw& law, const Vector3& along) {
     return sum;
 }
 
-/// From the multirotor's centre of mass to the middle of what touches, at the level hover.
-Vector3 lever_of(const SpaceTouch& touch, const SpaceRobot& robot, const SpacePoint& base) {
-    const SpacePose level = level_at(configuration_of(base));
-    return middle_of(touch, robot, level) - level.position_m;
-}
-
 /// How long a vector is without its part along another one of length 1.
 double length_across(const Vector3& v, const Vector3& normal) {
     const Vector3 across = v - dot(v, normal) * normal;
@@ -70,7 +63,6 @@ SpaceTouchFlight::SpaceTouchFlight(const SpaceRobot& robot, const SpaceTouch& to
       touch_(touch),
       world_(world),
       base_(rest_at(base)),
-      lever_m_(lever_of(touch, robot, base)),
       contact_(contact_of(touch, world)),
       course_(touch, robot.mass_kg(), stiffness_1_s2(robot.controller.law, touch.normal), 1 / robot.controller.rate_hz),
       force_(touch, 1 / robot.controller.rate_hz),
@@ -78,26 +70,12 @@ SpaceTouchFlight::SpaceTouchFlight(const SpaceRobot& robot, const SpaceTouch& to
 
 SpacePoint SpaceTouchFlight::reference() const {
     SpacePoint point = base_;
-    const Vector3 aside_m = against_lean_m();
     for (int axis = 0; axis < 3; ++axis) {
         const double normal = touch_.normal[static_cast<std::size_t>(axis)];
-        point.position[axis] += aside_m[static_cast<std::size_t>(axis)] - course_.ahead_m() * normal;
+        point.position[axis] -= course_.ahead_m() * normal;
         point.velocity[axis] = -course_.along_m_s() * normal;
     }
     return point;
-}
-
-/// Where the reference goes so that the middle of the points stays in place along the surface while the vehicle leans
-/// into it: its thrust carries the weight and the force.
-Vector3 SpaceTouchFlight::against_lean_m() const {
-    Vector3 thrust = -pressed_n_ * touch_.normal;
-    thrust[2] += robot_.mass_kg() * standard_gravity_m_s2;
-    const double thrust_n = lane::sqrt(dot(thrust, thrust));
-    const Vector3 axis = cross(Vector3{0, 0, 1}, (1 / thrust_n) * thrust);  // its length is the sine of the lean
-    const double cosine = thrust[2] / thrust_n;
-    const Vector3 turn = cross(axis, lever_m_);
-    const Vector3 back_m = -1 * (turn + (1 / (1 + cosine)) * cross(axis, turn));
-    return back_m - dot(back_m, touch_.normal) * touch_.normal;
 }
 
 void SpaceTouchFlight::saw(const dynamics::SpaceContactRecord& seen, const SpaceMotion& motion, double end_s,
@@ -111,9 +89,7 @@ void SpaceTouchFlight::saw(const dynamics::SpaceContactRecord& seen, const Space
         held_m_ = held_m_.value_or(place_m);
         slip_m_ = std::max(slip_m_, length_across(place_m - *held_m_, touch_.normal));
     }
-    const double force_n = seen.normal_impulse_n_s * robot_.controller.rate_hz;
-    pressed_n_ += course_.smoothing() * (force_n - pressed_n_);
-    course_.next(force_n);
+    course_.next(seen.normal_impulse_n_s * robot_.controller.rate_hz);
 }
 
 SpacePose SpaceTouchFlight::off_surface(SpacePose pose) const {

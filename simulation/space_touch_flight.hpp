@@ -42,15 +42,12 @@ class SpaceTouchFlight {
     [[nodiscard]] SpaceTouchRecord record(bool is_at_end) const;
 
  private:
-    [[nodiscard]] Vector3 against_lean_m() const;
     [[nodiscard]] SpaceTouchEnd end_of(const SpaceTouchRecord& record, bool is_at_end) const;
 
     const SpaceRobot& robot_;
     const SpaceTouch& touch_;
     const SpaceWorld& world_;
     SpacePoint base_;
-    Vector3 lever_m_;       ///< from the multirotor's centre of mass to the middle of the points, at the hover
-    double pressed_n_ = 0;  ///< normal force, smoothed
     dynamics::SpaceContact contact_;
     TouchCourse course_;
     TouchForce force_;

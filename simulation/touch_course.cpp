@@ -11,8 +11,6 @@ TouchCourse::TouchCourse(const TouchDemand& touch, double mass_kg, double stiffn
     const double rate_1_s = force_loop_share * std::sqrt(stiffness_1_s2);
     gain_m_n_s_ = rate_1_s / (mass_kg * stiffness_1_s2);
     settling_s_ = touch_settling_constants / rate_1_s;
-    constexpr double faster = 4;  // what leans slides before a slow mean says so, and friction then keeps it there
-    smoothing_ = std::min(1.0, faster * rate_1_s * tick_s_);
 }
 
 double TouchCourse::along_m_s() const noexcept {

@@ -20,8 +20,6 @@ class TouchCourse {
     [[nodiscard]] double ahead_m() const noexcept { return ahead_m_; }
     /// How fast the reference goes, into the surface.
     [[nodiscard]] double along_m_s() const noexcept;
-    /// What share of a new force a mean over a quarter of the time constant of the force loop takes on in a tick.
-    [[nodiscard]] double smoothing() const noexcept { return smoothing_; }
     /// Goes on by a tick. @param force_n mean normal force over it
     void next(double force_n);
 
@@ -49,7 +47,6 @@ class TouchCourse {
     double tick_s_;
     double gain_m_n_s_ = 0;  ///< how fast the reference goes on for a newton [m / (N s)]
     double settling_s_ = 0;
-    double smoothing_ = 1;
     Phase phase_ = Phase::approach;
     double ahead_m_ = 0;
     std::int64_t ticks_ = 0;

@@ -274,27 +274,3 @@ TEST_CASE("The flights of docs/space_files.md go well and print what it quotes")
     }
     CHECK(commands == 3);
 }
-
-TEST_CASE("solve plans in space under every variant and with OMPL's planners, and the judge agrees with its flights") {
-    const Workspace work;
-    // Nominal: a certificate is not what it is about.
-    std::string problem = replaced(read_file(girder), "uncertainty: {}\n", "");
-    problem = replaced(problem, "../robots/", DOWNWASH_PROBLEMS "/robots/");
-    write_file(work.in_run("free.yaml"), problem);
-    const auto solve = [&](const std::string& options) {
-        work.succeed("solve free.yaml --max-iterations 20000 --stop-at-first --no-cache --force --quiet --out run",
-                     options);
-        Json solution = Json::parse(work.text("run/solution.json"));
-        CHECK(solution.at("status") == "solved");
-        CHECK(solution.at("execution").at("outcome") == "ok");
-        CHECK(work.json("validate free.yaml --plan run").at("disagreements").empty());
-        return solution;
-    };
-    for (const std::string variant : {"mp-arm", "mp-arm-da", "mp-arm-ada"}) {
-        const Json solution = solve("--variant " + variant);
-        CHECK(solution.at("variant") == variant);
-        CHECK((solution.at("planning").at("simulated_s") == 0) == (variant == "mp-arm"));
-    }
-    CHECK(solve("--variant mp-arm --algorithm rrt-connect").at("algorithm") == "rrt-connect");
-    check_rejected(work.run("solve free.yaml --variant mp-arm --algorithm sst"), "which does not plan for mp-arm");
-}

@@ -7,7 +7,6 @@
 #include "downwash/planner/space_solve.hpp"
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
-#include "downwash/simulation/space_world_parameters.hpp"
 
 // What searches in space plan beside places: touches, where the vehicle looks, and what a plan keeps small.
 
@@ -190,34 +189,6 @@ TEST_CASE("a limit of how fast the vehicle turns holds for its roll and pitch in
     REQUIRE(found.status == Status::solved);
     CHECK(fastest_rad_s(*found.execution) < 1.05 * limit_rad_s);
     CHECK(found.planning.rejected.at("unstable") > 0);
-}
-
-TEST_CASE("certificates in space fly touches in every world, and say how near the flights came") {
-    // A wall in place of the shell, and half a degree less of what makes an arm of 1.2 m point elsewhere.
-    SpaceProblem problem = read("tank_shell");
-    problem.obstacles = {{"shell", Box{{1, 12, 15}}, {-0.5, 0, 7.5}, {}}};
-    problem.uncertainty.emplace();
-    problem.uncertainty->joint_offset_rad = problem.uncertainty->pitch_bias_rad = Spread::of_sd(0);
-    problem.goals = {touch_of_shell(5, 5, 1), place(2.5, -3, 4)};
-    std::get<SpaceContactGoal>(problem.goals[0].kind).tolerance_m = 0.25;
-    const SpaceSearchResult found = solved(problem);
-    REQUIRE(found.status == Status::solved);
-    REQUIRE(found.certificate);
-    CHECK(found.certificate->is_given);
-    const auto& clearance_m = found.certificate->clearance_m;
-    CHECK(clearance_m.p01 <= clearance_m.p10);
-    CHECK(clearance_m.p10 <= clearance_m.p50);
-    CHECK(clearance_m.p01 > 0);
-    const SpaceProblemModel model(problem);
-    REQUIRE(found.certificate->worst.size() > 2);
-    for (std::size_t i = 0; i < 4; ++i) {
-        const WorldSample& sample = found.certificate->worst[i];
-        SpaceExecutionSettings settings;
-        settings.world = draw_space_world(*problem.uncertainty, problem.robot, problem.planner.seed, sample.world);
-        const SpaceFlight flight = model.execute(*found.plan, settings);
-        CHECK(flight.outcome == Outcome::ok);
-        CHECK(sample.min_clearance_m == Approx(flight.min_clearance_m).epsilon(0.1).margin(0.021));
-    }
 }
 
 TEST_CASE("OMPL's planners plan in space, twice with the same bytes, and their plans are checked") {
