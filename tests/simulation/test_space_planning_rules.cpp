@@ -109,7 +109,7 @@ TEST_CASE("flights in space side by side sum up length, tilt rate and clearance 
     for (std::size_t i = 1; i < alone.rows.size(); ++i) {
         const Vector3& rates = alone.rows[i].motion.body_rates_rad_s;
         const Vector3 step_m = alone.rows[i].motion.position_m - alone.rows[i - 1].motion.position_m;
-        tilt_rate_rad_s = std::max(tilt_rate_rad_s, std::hypot(rates[0], rates[1]));
+        tilt_rate_rad_s = std::max(tilt_rate_rad_s, std::sqrt(rates[0] * rates[0] + rates[1] * rates[1]));
         way_m += std::sqrt(dot(step_m, step_m));
     }
     CHECK(alone.length_m == Approx(way_m).epsilon(1e-12));
