@@ -13,7 +13,7 @@ namespace downwash {
 namespace {
 
 /// The length of the step from a row to the next [m].
-double step_m(const FlightColumns& flight, const std::vector<std::string_view>& axes, std::size_t row) {
+double way_after_m(const FlightColumns& flight, const std::vector<std::string_view>& axes, std::size_t row) {
     double square = 0;
     for (const std::string_view axis : axes) {
         const double step = flight[axis][row + 1] - flight[axis][row];
@@ -56,7 +56,7 @@ std::vector<std::size_t> snapshot_rows(const FlightColumns& flight, const std::v
                                        double vehicle_m, double min_count, double max_count) {
     double length_m = 0;
     for (std::size_t row = 0; row + 1 < flight.rows(); ++row) {
-        length_m += step_m(flight, axes, row);
+        length_m += way_after_m(flight, axes, row);
     }
     const double count = std::clamp(std::round(length_m / (1.3 * vehicle_m)), min_count, max_count);
     std::vector<std::size_t> rows;
