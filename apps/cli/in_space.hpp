@@ -57,7 +57,7 @@ struct SearchInSpace {
     std::optional<Replanned> replanned = {};   ///< how
 };
 /// @param interruption made before anything that takes long
-[[nodiscard]] ExitCode search_in_space(SearchInSpace search, Interruption& interruption);
+[[nodiscard]] ExitCode search_in_space(SearchInSpace given, Interruption& interruption);
 
 /// A flight in space for people: a verdict and a table. @param more rows of it, before those of the flight
 [[nodiscard]] std::string space_summary(const std::string& verdict, const SpaceSolution& solution,
