@@ -117,8 +117,10 @@ std::vector<KeyError> read_problems(const Campaign& campaign, std::vector<AnyPro
             AnyProblem problem = read_any_problem(path, on_outdated, on_warning, further_errors);
             const std::string& name = problem_name(problem);
             if (std::ranges::any_of(problems, [&](const AnyProblem& other) { return problem_name(other) == name; })) {
-                errors.push_back({"problems", "name '" + path + "', which has the name of another, " + name +
-                                                  ": expected every problem once, with a name of its own"});
+                std::string message = "name '" + path;
+                message.append("', which has the name of another, ").append(name);
+                message += ": expected every problem once, with a name of its own";
+                errors.push_back({"problems", std::move(message)});
             }
             problems.push_back(std::move(problem));
         } catch (const ProblemFileError& error) {

@@ -78,8 +78,8 @@ SpaceStart start_of(const SpaceProblemModel& model, const AnySpaceState& state, 
     start.attitude = motion.attitude;
     start.body_rates_rad_s = motion.body_rates_rad_s;
     start.joint_rates_rad_s = first(motion.joint_rates_rad_s, joints);
-    start.reference.emplace(first(reference.position, axes), first(reference.velocity, axes),
-                            first(reference.acceleration, axes));
+    start.reference = SpaceStart::Reference{first(reference.position, axes), first(reference.velocity, axes),
+                                            first(reference.acceleration, axes)};
     start.carry = carry_of(robot, state);
     return start;
 }

@@ -87,7 +87,7 @@ VisitOrder read_order_in(JsonReader& reader, const Node& node, const AnyProblem&
 /// The node of an order. @return nothing without one
 template <class AnyProblem>
 std::optional<Node> node_of_order(JsonReader& reader, const Node& root, const AnyProblem& problem) {
-    const auto node = JsonReader::member(root, "order");
+    auto node = JsonReader::member(root, "order");
     if (!node || node->json->is_null()) {
         return std::nullopt;
     }

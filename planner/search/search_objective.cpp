@@ -10,7 +10,7 @@ template <class Family>
 double ProblemObjectiveOf<Family>::of_leg(const FlightState& from, const FlightLeg& leg) const {
     const double time_s = static_cast<double>(leg.flight.ticks) * tick_s_;
     const double energy_j = leg.end.plant.energy_j - from.plant.energy_j;
-    return objective_({leg.flight, energy_j, time_s, leg.flight.clearance_integral});
+    return objective_({static_cast<const FlightSums&>(leg.flight), energy_j, time_s, leg.flight.clearance_integral});
 }
 
 template class ProblemObjectiveOf<Plane>;
