@@ -153,7 +153,7 @@ std::span<const Maneuver> BrakingPartsOf<Space>::maneuvers() noexcept {
 }
 
 SpaceMotionLimits BrakingPartsOf<Space>::limits_of(const Maneuver& maneuver) const {
-    SpaceMotionLimits limits = problem_.motion;
+    SpaceMotionLimits limits = motion_limits_of(problem_);
     limits.max_speed_m_s *= 2;  // a vehicle is as fast as it is
     limits.max_yaw_rate_rad_s *= 2;
     limits.max_acceleration_m_s2 *= maneuver.harder;
