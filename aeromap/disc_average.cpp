@@ -289,16 +289,12 @@ double average_by_areas(const DiscQuery& query, double background_m, const std::
     return background + excess / (pi * query.radius_m * query.radius_m);
 }
 
-/// The parts that may lie over or under the disc, in the scene's order, however they were found: primitives first. Of
-/// triangles, none that is seen from its edge only.
-void add_parts(const DiscQuery& query, std::pmr::vector<std::size_t>& parts) {
+/// The vertical column from the disc on the query's side.
+BoundingBox column_of(const DiscQuery& query) {
     const auto& [x, y, z] = query.hub_m;
     const double r = query.radius_m;
     const bool is_below = query.side == Side::below;
-    query.scene.add_parts_meeting({{x - r, y - r, is_below ? -infinity : z}, {x + r, y + r, is_below ? z : infinity}},
-                                  parts);
-    std::erase_if(parts, [&](std::size_t part) { return !query.scene.has_shadow(part); });
-    std::sort(parts.begin(), parts.end());
+    return {{x - r, y - r, is_below ? -infinity : z}, {x + r, y + r, is_below ? z : infinity}};
 }
 
 }  // namespace
@@ -332,7 +328,8 @@ double disc_average(const DiscQuery& query, const Footprints& footprints) {
     if (footprints.are_few_primitives()) {
         std::for_each(primitives.begin(), primitives.end(), add_over_disc);
     } else {
-        add_parts(query, others);
+        // In the scene's order, however they were found: primitives first.
+        footprints.part_columns().add_parts_meeting(column_of(query), others);
         const auto first_other = std::lower_bound(others.begin(), others.end(), primitives.size());
         std::for_each(others.begin(), first_other, [&](std::size_t part) { add_over_disc(primitives[part]); });
         others.erase(others.begin(), first_other);

@@ -212,6 +212,7 @@ bool Footprint::is_same_along(double dx, double dy, const BoundingBox& hubs, dou
 
 Footprints::Footprints(const Scene& scene, double radius_m)
     : scene_(scene),
+      part_columns_(scene, radius_m),
       primitives_(scene.part_count() > few_parts ? std::vector<Footprint>{} : footprints_of_primitives(scene)),
       others_(scene.part_count() - primitives_.size()) {
     if (scene.part_count() > few_parts) {

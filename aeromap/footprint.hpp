@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "downwash/aeromap/part_columns.hpp"
 #include "downwash/aeromap/row_columns.hpp"
 #include "downwash/scene/scene.hpp"
 #include "downwash/scene/shadow_outline.hpp"
@@ -83,6 +84,9 @@ class Footprints {
     /// The columns of a scene of many parts; nullptr in a scene of few.
     [[nodiscard]] const RowColumns* columns() const noexcept { return columns_ ? &*columns_ : nullptr; }
 
+    /// The parts near discs, in any scene.
+    [[nodiscard]] const PartColumns& part_columns() const noexcept { return part_columns_; }
+
     /// The footprints of the scene's first parts: Scene::primitive_count() of them, in a scene of many parts none.
     [[nodiscard]] std::span<const Footprint> of_primitives() const noexcept { return primitives_; }
 
@@ -100,6 +104,7 @@ class Footprints {
     using Kept = std::atomic<const Footprint*>;
 
     const Scene& scene_;
+    PartColumns part_columns_;
     std::optional<RowColumns> columns_;
     std::vector<Footprint> primitives_;
     mutable std::vector<Kept> others_;  ///< null: not yet made
