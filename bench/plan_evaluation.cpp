@@ -79,7 +79,10 @@ WorldFigures PlanEvaluation::evaluate(const Plan& plan) {
 }
 
 SpacePlanEvaluation::SpacePlanEvaluation(SpaceProblem problem, std::uint64_t worlds)
-    : problem_(std::move(problem)), world_count_(worlds) {
+    : problem_(std::move(problem)),
+      world_count_(worlds),
+      model_(std::make_shared<const SpaceProblemModel>(problem_)),
+      volumes_(problem_.aero.enabled ? make_volumes(*model_, {}) : nullptr) {
     const SpaceRobot& robot = problem_.robot;
     const Uncertainty& uncertainty = problem_.uncertainty.value();
     for (std::uint64_t i = 1; i <= worlds; ++i) {
@@ -97,20 +100,17 @@ SpacePlanEvaluation::SpacePlanEvaluation(SpaceProblem problem, std::uint64_t wor
 
 std::optional<WorldFigures> SpacePlanEvaluation::evaluate(const SpacePlan& plan, const std::optional<VisitOrder>& order,
                                                           const std::stop_token& stop) const {
-    const SpaceProblemModel model(in_order(problem_, order));
-    std::vector<bool> fails;
+    const SpaceProblem problem = in_order(problem_, order);
+    const auto model = order ? std::make_shared<const SpaceProblemModel>(problem) : model_;
     try {
-        for (const SpaceWorld& world : worlds_) {
-            SpaceExecutionSettings settings;
-            settings.aero = problem_.aero.enabled;
-            settings.world = world;
-            settings.is_over = [&stop] { return stop.stop_requested(); };
-            fails.push_back(model.execute(plan, settings).outcome != Outcome::ok);
-        }
+        const std::vector<WorldSample> flown =
+            planning::fly_in_worlds(problem, {problem.planner.variant, model, volumes_}, 1, plan, worlds_,
+                                    [&stop] { return stop.stop_requested(); });
+        return counted(world_count_, parameters_,
+                       [&](std::size_t world) { return flown[world].outcome != Outcome::ok; });
     } catch (const WorkStopped&) {
         return std::nullopt;
     }
-    return counted(world_count_, parameters_, [&](std::size_t world) { return fails[world]; });
 }
 
 }  // namespace downwash::bench

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "downwash/bench/campaign_data.hpp"
+#include "downwash/planner/space_solve.hpp"
+#include "downwash/planner/space_worlds.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/space_problem_model.hpp"
 #include "downwash/problems/visit_order.hpp"
@@ -51,7 +53,7 @@ class PlanEvaluation {
     std::vector<std::unique_ptr<WorldFlights>> free_;
 };
 
-/// The same for plans of a problem in space, with direct aerodynamics.
+/// The same for plans of a problem in space, through volumes that are filled where flights ask.
 class SpacePlanEvaluation {
  public:
     /// @param problem has an uncertainty   @param worlds how many: indices 1 to `worlds` of evaluation_seed
@@ -65,6 +67,8 @@ class SpacePlanEvaluation {
  private:
     SpaceProblem problem_;
     std::uint64_t world_count_;
+    std::shared_ptr<const SpaceProblemModel> model_;
+    std::shared_ptr<const SurfaceVolumes> volumes_;
     std::vector<std::string> parameters_;  ///< parameters that are not exact
     std::vector<SpaceWorld> worlds_;       ///< those drawn; then each parameter at its low and its high quantile
 };

@@ -258,12 +258,11 @@ void SpaceProblemWorlds::advance(std::vector<SpaceFlightJob>& jobs, const SpaceP
     pool(0, true).fly(jobs);
 }
 
-bool SpaceProblemWorlds::survives(const SpacePlan& plan, std::span<const SpaceWorld> worlds,
-                                  const StopCondition& is_over) {
+std::vector<WorldSample> SpaceProblemWorlds::fly(const SpacePlan& plan, std::span<const SpaceWorld> worlds,
+                                                 const StopCondition& is_over) {
     const Asking scope(is_over_, is_over);
     Vehicles vehicles = starts_in(worlds, true);
-    return std::ranges::all_of(fly_on(vehicles, plan, 0, goals(), 1, worlds, is_over),
-                               [](const WorldSample& each) { return each.outcome == Outcome::ok; });
+    return fly_on(vehicles, plan, 0, goals(), 1, worlds, is_over);
 }
 
 std::vector<CounterexampleOf<Space>> SpaceProblemWorlds::counterexamples(const Certificate& certificate,
@@ -447,6 +446,12 @@ Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const Spac
         screened_[visited + 1] = std::move(after);
     }
     return certificate;
+}
+
+std::vector<WorldSample> fly_in_worlds(const SpaceProblem& problem, const PlannerModelOf<Space>& model, int threads,
+                                       const SpacePlan& plan, std::span<const SpaceWorld> worlds,
+                                       const StopCondition& is_over) {
+    return SpaceProblemWorlds(problem, model, threads).fly(plan, worlds, is_over);
 }
 
 }  // namespace downwash::planning

@@ -33,9 +33,9 @@ class SpaceProblemWorlds {
     [[nodiscard]] Vehicles starts_in(std::span<const SpaceWorld> worlds) { return starts_in(worlds, true); }
     /// Moves vehicles along a whole plan, a leg for each piece of it; none is judged.
     void advance(std::vector<SpaceFlightJob>& jobs, const SpacePlan& plan);
-    /// Whether a plan flies through all goals in each of the worlds, among all surfaces. @throws WorkStopped
-    [[nodiscard]] bool survives(const SpacePlan& plan, std::span<const SpaceWorld> worlds,
-                                const StopCondition& is_over);
+    /// How a plan fares through all goals in each of the worlds, among all surfaces. @throws WorkStopped
+    [[nodiscard]] std::vector<WorldSample> fly(const SpacePlan& plan, std::span<const SpaceWorld> worlds,
+                                               const StopCondition& is_over);
 
     /// See ProblemWorlds. @pre the problem has an uncertainty
     [[nodiscard]] SearchWorldsOf<Space> for_search(const CourseOf<Space>& before);
@@ -97,5 +97,13 @@ class SpaceProblemWorlds {
     std::vector<FlownFleetOf<Space>> searching_, screened_;
     StopCondition is_over_;  ///< what flights ask
 };
+
+/// Flies a plan through all goals of a problem in worlds, from its start, through the model's volumes.
+/// @return one sample for each world, in their order and numbered from 1   @throws WorkStopped
+[[nodiscard]] DOWNWASH_EXPORT std::vector<WorldSample> fly_in_worlds(const SpaceProblem& problem,
+                                                                     const PlannerModelOf<Space>& model, int threads,
+                                                                     const SpacePlan& plan,
+                                                                     std::span<const SpaceWorld> worlds,
+                                                                     const StopCondition& is_over);
 
 }  // namespace downwash::planning
