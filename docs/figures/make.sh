@@ -69,6 +69,11 @@ girder=$problems/space/around_a_girder
 "$downwash" report "$work/in_space" --svg --width 900 >/dev/null
 cp "$work/in_space/flight.svg" flight_in_space.svg
 
+# The shipped problems in space before planning, in three views.
+for name in girder_bay pipe_rack culvert tank_shell box_girder_chamber tunnel_crown window around_a_pier girder_bay_survey girder_survey; do
+    "$downwash" check "$problems/space/$name.yaml" --picture "problem_$name.svg" >/dev/null
+done
+
 # Block diagrams.
 ./blocks.py blocks.txt .
 
