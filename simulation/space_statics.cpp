@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
@@ -55,6 +56,9 @@ ArmPose arm_pose(const SpaceRobot& robot, const std::vector<double>& joints_rad)
     ArmPose pose;
     Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
     Vector3 at_m{};
+    for (std::vector<Vector3>* rows : {&pose.joint_m, &pose.axis, &pose.center_of_mass_m}) {
+        rows->reserve(robot.plant.links.size());
+    }
     for (std::size_t i = 0; i < robot.plant.links.size(); ++i) {
         const SpaceLink& link = robot.plant.links[i];
         const Vector3 axis = normalised(link.axis);
@@ -126,9 +130,10 @@ WorstPose worst_pose(const SpaceRobot& robot, const std::function<double(const s
             const double before = best;
             for (std::size_t i = 0; i < joints; ++i) {
                 const auto at = [&](double angle_rad) {
-                    std::vector<double> changed = q;
-                    changed[i] = angle_rad;
-                    return value(changed);
+                    const double kept_rad = std::exchange(q[i], angle_rad);
+                    const double found = value(q);
+                    q[i] = kept_rad;
+                    return found;
                 };
                 const double forth = at(0), back = at(std::numbers::pi), middle = (forth + back) / 2;
                 const double peak = std::atan2(at(std::numbers::pi / 2) - middle, (forth - back) / 2);
@@ -136,9 +141,12 @@ WorstPose worst_pose(const SpaceRobot& robot, const std::function<double(const s
                 const double turn = 2 * std::numbers::pi;
                 const double first = peak + turn * std::ceil((low - peak) / turn);
                 for (const double angle_rad : {low, high, first}) {
-                    if (angle_rad <= high && at(angle_rad) > best) {
+                    if (angle_rad > high) {
+                        continue;
+                    }
+                    if (const double there = at(angle_rad); there > best) {
                         q[i] = angle_rad;
-                        best = value(q);
+                        best = there;
                     }
                 }
             }
