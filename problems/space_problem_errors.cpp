@@ -4,6 +4,7 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "downwash/base/angles.hpp"
 #include "downwash/base/direction.hpp"
 #include "downwash/base/text.hpp"
+#include "downwash/problems/buried_goals.hpp"
 #include "downwash/problems/number_text.hpp"
 #include "downwash/problems/shared_checks.hpp"
 #include "downwash/problems/space_goal_parameters.hpp"
@@ -381,7 +383,10 @@ Errors touches_that_settle_late(const SpaceProblem& p) {
                                      " s; raise the gains of the position"}};
 }
 
-const std::array<Check<SpaceProblem>, 19> checks{{
+/// A vehicle in flight is not asked: an obstacle that turns out to stand at its goal is no reason to give it no answer.
+constexpr std::string_view before_flight = "start";
+
+const std::array<Check<SpaceProblem>, 20> checks{{
     {{"environment.bounds"}, reversed_bounds},
     {{"environment.obstacles"}, repeated_names<SpaceProblem>},
     {{"environment.obstacles"}, shapeless_cylinders<SpaceProblem>},
@@ -402,6 +407,7 @@ const std::array<Check<SpaceProblem>, 19> checks{{
     {{"goal"}, goal_count},
     {{"goal"}, unclear_mission},
     {{"goal", "environment.bounds", "environment.obstacles", "robot.arm"}, unclear_goals},
+    {{"goal", "environment.obstacles", "robot.multirotor.body", "robot.arm", before_flight}, buried_goals},
     {{"goal", "robot.controller"}, touches_that_settle_late},
 }};
 

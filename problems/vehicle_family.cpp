@@ -78,10 +78,8 @@ std::optional<YamlError> misfit<Problem>(const std::string& path, const YamlNode
         if (keys.space) {
             return keys.plane ? mixed(keys, "problem")
                               : YamlError(keys.space->mark,
-                                          "environment.bounds.y_m makes this a problem in space, and plans are not "
-                                          "searched for there yet: `downwash check` reads it, and `downwash execute "
-                                          "--plan` and `downwash validate --plan` fly a given reference; without y_m "
-                                          "it is a problem in a vertical plane");
+                                          "environment.bounds.y_m makes this a problem in space: expected one in a "
+                                          "vertical plane, whose bounds have no y_m");
         }
     }
     if (path == "robot") {

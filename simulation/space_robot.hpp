@@ -52,8 +52,8 @@ struct SpaceRobot {
 /// Empty when the robot is sound.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> space_robot_errors(const SpaceRobot& robot);
 
-/// What can fly but is likely not meant: a pose of the arm in which a rotor would need more than it gives to hover.
-/// Keys are relative to the robot. @pre space_robot_errors(robot) is empty
+/// What can fly but is likely not meant: rotors at one place, a pose of the arm in which a rotor would need more than
+/// it gives to hover. Keys are relative to the robot. @pre space_robot_errors(robot) is empty
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> space_robot_warnings(const SpaceRobot& robot);
 
 }  // namespace downwash

@@ -182,10 +182,33 @@ Errors unusable_rotor_layout(const SpaceRobot& robot) {
     constexpr double rounding = 1e-9;
     const auto least = std::find_if(shares.begin(), shares.end(), [](double share) { return share < -rounding; });
     if (least != shares.end()) {
+        const auto rotor = least - shares.begin();
+        if (robot.plant.rotors[static_cast<std::size_t>(rotor)].axis[2] < 0) {
+            return {{"rotors.axes", "of rotor " + std::to_string(rotor + 1) +
+                                        " points down: expected thrust upwards, with x forward, y left and z up; where "
+                                        "z is down, y and z have the other sign"}};
+        }
         return {{"rotors.positions_m",
-                 "would need rotor " + std::to_string(least - shares.begin() + 1) +
+                 "would need rotor " + std::to_string(rotor + 1) +
                      " to pull downwards in a hover: expected the multirotor's centre of mass, [0, 0, 0], between the "
                      "hubs"}};
+    }
+    return {};
+}
+
+/// The first two hubs without a distance.
+Errors rotors_at_one_place(const SpaceRobot& robot) {
+    constexpr double least_m = 1e-3;
+    const std::vector<SpaceRotor>& rotors = robot.plant.rotors;
+    for (std::size_t k = 1; k < rotors.size(); ++k) {
+        for (std::size_t i = 0; i < k; ++i) {
+            const Vector3 apart_m = rotors[k].position_m - rotors[i].position_m;
+            if (dot(apart_m, apart_m) < least_m * least_m) {
+                return {{"rotors.positions_m", "has rotors " + std::to_string(i + 1) + " and " + std::to_string(k + 1) +
+                                                   " at one place: expected hubs apart, of coaxial rotors one above "
+                                                   "the other"}};
+            }
+        }
     }
     return {};
 }
@@ -340,14 +363,16 @@ Errors space_robot_errors(const SpaceRobot& robot) {
 }
 
 Errors space_robot_warnings(const SpaceRobot& robot) {
+    Errors warnings = rotors_at_one_place(robot);
     const SpaceRobotFacts facts = space_robot_facts(robot);
-    if (facts.hover_share <= 1) {
-        return {};
+    if (facts.hover_share > 1) {
+        warnings.push_back({"rotors.max_thrust_n", "makes rotor " + std::to_string(facts.hover_rotor + 1) + " give " +
+                                                       rounded(100 * facts.hover_share) +
+                                                       " % of its greatest thrust in a hover with joints at " +
+                                                       joints_text(facts.hover_joints_rad) +
+                                                       " deg: it cannot hover there"});
     }
-    return {{"rotors.max_thrust_n", "makes rotor " + std::to_string(facts.hover_rotor + 1) + " give " +
-                                        rounded(100 * facts.hover_share) +
-                                        " % of its greatest thrust in a hover with joints at " +
-                                        joints_text(facts.hover_joints_rad) + " deg: it cannot hover there"}};
+    return warnings;
 }
 
 }  // namespace downwash

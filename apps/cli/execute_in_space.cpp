@@ -60,11 +60,15 @@ std::string goal_rows(const SpaceFlight& flight, const std::optional<VisitOrder>
 
 }  // namespace
 
-std::string space_summary(const std::string& verdict, const SpaceSolution& solution, const std::string& more) {
+std::string space_summary(const std::string& verdict, const SpaceSolution& solution, const std::string& before,
+                          const std::string& after) {
     std::string text = verdict + "\n\n";
-    text += table_row("status", std::string(name_of(solution.status))) + more;
+    text +=
+        table_row("status", fmt::format("{} ({}, {}, {}, seed {})", name_of(solution.status), name_of(solution.variant),
+                                        solution.algorithm, text_of(solution.objective), solution.seed)) +
+        before;
     if (!solution.execution) {
-        return text;
+        return text + after;
     }
     const SpaceFlight& flight = *solution.execution;
     if (solution.execution_world) {
@@ -74,9 +78,10 @@ std::string space_summary(const std::string& verdict, const SpaceSolution& solut
     text +=
         table_row("flight", fmt::format("{}, {}", name_of(flight.outcome),
                                         solution.aero ? "aerodynamics evaluated directly" : "without aerodynamics"));
-    const std::string_view unit = unit_of(solution.objective);
-    text += table_row(
-        "cost", fmt::format("{:.6g}{}{} executed", cost_of(flight, solution.objective), unit.empty() ? "" : " ", unit));
+    const std::string_view symbol = unit_of(solution.objective);
+    const std::string unit = symbol.empty() ? "" : " " + std::string(symbol);
+    const std::string planned = solution.search ? fmt::format("{:.6g}{} planned, ", solution.search->cost, unit) : "";
+    text += table_row("cost", fmt::format("{}{:.6g}{} executed", planned, cost_of(flight, solution.objective), unit));
     text += table_row("duration", fmt::format("{:.2f} s", flight.duration_s));
     text += table_row("energy", fmt::format("{:.6g} J", flight.energy_j));
     text += table_row("goal error", millimetres(worst_goal_error_m(flight)));
@@ -85,7 +90,7 @@ std::string space_summary(const std::string& verdict, const SpaceSolution& solut
     text += table_row("saturation", fmt::format("{:.3f}", flight.max_saturation));
     text += table_row("min. clearance",
                       std::isfinite(flight.min_clearance_m) ? millimetres(flight.min_clearance_m) : "no obstacles");
-    return text;
+    return text + after;
 }
 
 ExitCode execute_in_space(const ExecuteArguments& given) {

@@ -59,9 +59,10 @@ struct SearchInSpace {
 /// @param interruption made before anything that takes long
 [[nodiscard]] ExitCode search_in_space(SearchInSpace given, Interruption& interruption);
 
-/// A flight in space for people: a verdict and a table. @param more rows of it, before those of the flight
+/// A flight in space for people: a verdict and a table. @param before rows before those of the flight
+/// @param after rows behind them
 [[nodiscard]] std::string space_summary(const std::string& verdict, const SpaceSolution& solution,
-                                        const std::string& more = {});
+                                        const std::string& before = {}, const std::string& after = {});
 
 /// `margins`.
 [[nodiscard]] ExitCode margins_in_space(const std::string& file, const std::vector<double>& joints_deg, bool as_json);

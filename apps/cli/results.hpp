@@ -31,12 +31,6 @@ namespace downwash::cli {
 [[nodiscard]] std::string takeover_rows(const Replanned& from, const std::string& place, bool has_worlds,
                                         std::string_view unit);
 
-/// A row about stops along a plan. @param share_without see SafeStops
-[[nodiscard]] std::string stops_row(double share_without);
-
-/// The result of a search, in one sentence.
-[[nodiscard]] std::string verdict_on_search(const Solution& solution);
-
 /// The obstacles that stopped most edges and how many, the first ones first: "pier 15800, bay 93".
 [[nodiscard]] std::string most_stopping(const std::map<std::string, std::uint64_t>& stopped_by);
 

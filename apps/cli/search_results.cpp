@@ -6,6 +6,7 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_report.hpp"
+#include "downwash/cli/search_rows.hpp"
 
 namespace downwash::cli {
 
@@ -21,9 +22,11 @@ void write_search(RunFolder& folder, const PlannableProblem& plannable, const So
     if (solution.map != nullptr || solution.planning.iterations > 0 || !solution.interrupted) {
         write_page(folder.path(), record, output.threads);
     }
-    fmt::print("{}", output.as_json ? record.solution_text
-                                    : summary_of(verdict_on_search(solution), problem, solution, folder.path()) +
-                                          input_rows(inputs));
+    const bool is_with_aero = solution.execution && solution.execution->aero;
+    fmt::print("{}", output.as_json
+                         ? record.solution_text
+                         : summary_of(verdict_on_search(solution, is_with_aero), problem, solution, folder.path()) +
+                               input_rows(inputs));
 }
 
 }  // namespace downwash::cli

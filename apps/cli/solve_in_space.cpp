@@ -15,9 +15,9 @@
 #include "downwash/cli/results.hpp"
 #include "downwash/cli/run_folder.hpp"
 #include "downwash/cli/run_report.hpp"
+#include "downwash/cli/search_rows.hpp"
 #include "downwash/planner/space_solve.hpp"
 #include "downwash/planner/takeover.hpp"
-#include "downwash/problems/cut_off_goals.hpp"
 #include "downwash/problems/space_problem_model.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/results/space_solution_file.hpp"
@@ -31,62 +31,8 @@ std::string announcement(const SpaceProblem& problem) {
                        name_of(planner.variant), planner.algorithm, text_of(planner.objective), planner.seed);
 }
 
-/// What stood before the goal, for people.
-std::string obstruction_text(const SpaceSearchResult& search) {
-    std::string text = search.plan ? "The plan does not reach the goal" : "There is no plan";
-    if (search.missed_goal) {
-        text += " (" + goal_name(search.order, *search.missed_goal) + ")";
-    }
-    if (const auto& obstruction = search.obstruction) {
-        text += fmt::format(": {}", obstruction->cause);
-        if (!obstruction->obstacles.empty()) {
-            text += " near " + quoted_labels(obstruction->obstacles);
-        }
-    }
-    return text + ".";
-}
-
-std::string verdict_on(const SpaceSearchResult& search, const SpaceSolution& solution) {
-    if (search.status == Status::solved && solution.execution) {
-        return verdict_on_outcome(solution.execution->outcome, solution.aero, "reaches the goal and hovers there.");
-    }
-    if (lacks_energy_for_all(search.order)) {
-        return "No solution: the energy budget is not enough for any target.";
-    }
-    if (search.order && !search.order->left_out.empty() && solution.execution &&
-        solution.execution->outcome == Outcome::ok) {
-        return left_out_text(*search.order);
-    }
-    return obstruction_text(search);
-}
-
-std::string rows_of(const SpaceProblem& problem, const SpaceSearchResult& search) {
-    const SearchRecord& record = search.planning;
-    std::string text;
-    if (search.order) {
-        text += order_rows(*search.order, search.plan.has_value(), problem.energy_budget_j);
-    }
-    if (const auto& certificate = search.certificate) {
-        text +=
-            table_row("certificate", fmt::format("{}: {} of {} worlds fail, failure probability at most {:.4g}",
-                                                 certificate->is_given ? "given" : "not given", certificate->failures,
-                                                 certificate->worlds, certificate->failure_probability.high));
-    }
-    std::string times = fmt::format("{:.2f} s, {} iterations", record.wall_s, record.iterations);
-    if (record.first_solution_wall_s) {
-        times += fmt::format(", first plan after {:.2f} s", *record.first_solution_wall_s);
-    }
-    if (record.first_certified_wall_s) {
-        times += fmt::format(", first certified after {:.2f} s", *record.first_certified_wall_s);
-    }
-    if (search.safe_stops) {
-        text += stops_row(search.safe_stops->share_without);
-    }
-    text += table_row("search", times);
-    if (!record.stopped_by.empty()) {
-        text += table_row("edges stopped by", most_stopping(record.stopped_by));
-    }
-    return text;
+std::string order_rows_of(const SpaceProblem& problem, const SpaceSearchResult& search) {
+    return search.order ? order_rows(*search.order, search.plan.has_value(), problem.energy_budget_j) : std::string();
 }
 
 /// How the plan takes over from an earlier one, if it does.
@@ -153,8 +99,9 @@ ExitCode search_in_space(SearchInSpace given, Interruption& interruption) {
         fmt::print("{}", record.solution_text);
     } else {
         fmt::print("{}{}",
-                   space_summary(verdict_on(*search, solution), solution,
-                                 takeover_rows_of(problem, solution) + rows_of(problem, *search)),
+                   space_summary(verdict_on_search(*search, solution.aero), solution,
+                                 takeover_rows_of(problem, solution) + order_rows_of(problem, *search),
+                                 search_rows(*search, given.folder.path())),
                    file_rows(given.folder.path(), "solution.json, trajectory.csv, tree.csv, effective.yaml"));
     }
     if (interruption.code() != ExitCode::done) {

@@ -74,6 +74,24 @@ for name in girder_bay pipe_rack culvert tank_shell box_girder_chamber tunnel_cr
     "$downwash" check "$problems/space/$name.yaml" --picture "problem_$name.svg" >/dev/null
 done
 
+# The flight of the tutorial, by the files that stand in it.
+tutorial=$work/tutorial
+page=$(realpath ../tutorial.md)
+mkdir "$tutorial"
+ln -s "$problems" "$tutorial/problems"
+(
+    cd "$tutorial"
+    awk '/^```yaml file / { file = $3; printf "" >file; copies = 1; next }
+        /^```yaml add/ { copies = 1; next }
+        /^```/ { copies = 0 }
+        copies { print >file }' "$page"
+    "$downwash" margins inspector.yaml --design --translation-rad-s 1.2 >gains
+    cat gains >>inspector.yaml
+    "$downwash" solve bay.yaml --max-iterations 400 --stop-at-first --quiet --out flight >/dev/null
+    "$downwash" report flight --svg --width 900 >/dev/null
+)
+cp "$tutorial/flight/flight.svg" tutorial_flight.svg
+
 # Block diagrams.
 ./blocks.py blocks.txt .
 

@@ -185,8 +185,10 @@ TEST_CASE("A problem in space is begun, checked, explained and solved") {
     CHECK(robots.at(0).at("joints") == 3);
     CHECK(robots.at(0).at("hover_joints_deg").size() == 3);
 
-    CHECK_THAT(work.succeed("solve my_problem.yaml --max-iterations 100 --out planned").out,
-               Contains("status            solved"));
+    CHECK_THAT(work.succeed("solve my_problem.yaml --max-iterations 100 --stop-at-first --out planned").out,
+               Contains("Solved. The flight with direct aerodynamics") &&
+                   Contains("status            solved (mp-arm-ada, rrt-star, energy, seed 1)") &&
+                   Contains(" J planned, ") && Contains(" or more in 99 % of the worlds") && Contains("rejected  "));
     CHECK_THAT(work.succeed("check my_problem.yaml --picture views.svg").out, Catch::EndsWith("\nviews.svg\n"));
     CHECK_THAT(work.text("views.svg"), Contains("from above") && Contains("from the front") && Contains("girder"));
     if (has_pages) {

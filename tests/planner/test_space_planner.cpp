@@ -209,3 +209,18 @@ TEST_CASE("a goal in space that moved is planned for, and goals that were visite
     REQUIRE(other.advice == Advice::follow);
     CHECK(std::abs(other.plan.reference.back().point.position[space::x] + 1.5) < 0.15);
 }
+
+TEST_CASE("an obstacle in space that turns out to stand at the goal leaves the vehicle a stop") {
+    SpacePlanner planner(under_a_girder(), first_in_space());
+    REQUIRE(planner.solve().status == Status::solved);
+    const SpaceStart here = planner.predicted(planner.problem().start, *planner.plan(), 100);
+    SpaceSceneChange change;
+    change.put.push_back({"crate", Box{{1, 1, 1}}, {0.41, 0.35, 3.77}});
+    CHECK(planner.replan(here, 100, change, space_iterations(10)).advice == Advice::stop);
+    // Before a flight it is an error.
+    SpaceProblem problem = under_a_girder();
+    problem.obstacles.push_back(change.put.front());
+    const std::vector<KeyError> errors = space_problem_errors(problem);
+    REQUIRE(errors.size() == 1);
+    CHECK(errors[0].key == "goal.end_effector.position_m");
+}

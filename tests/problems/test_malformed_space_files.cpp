@@ -257,13 +257,11 @@ TEST_CASE("robots and problems of a vertical plane and of space do not fit each 
           "makes it");
 }
 
-TEST_CASE("what plans in a vertical plane says of a problem in space that plans are not searched for there") {
+TEST_CASE("what takes problems in a vertical plane says so of a problem in space") {
     const TestFolder folder;
-    CHECK(
-        folder.errors_of(good_space_problem, good_space_robot) ==
-        "problem.yaml:5:26: environment.bounds.y_m makes this a problem in space, and plans are not searched for there "
-        "yet: `downwash check` reads it, and `downwash execute --plan` and `downwash validate --plan` fly a given "
-        "reference; without y_m it is a problem in a vertical plane");
+    CHECK(folder.errors_of(good_space_problem, good_space_robot) ==
+          "problem.yaml:5:26: environment.bounds.y_m makes this a problem in space: expected one in a vertical plane, "
+          "whose bounds have no y_m");
     CHECK(is_space_problem_file(folder / "problem.yaml"));
     CHECK(is_space_robot_file(folder / "robot.yaml"));
     folder.write("problem.yaml", good_problem);
