@@ -25,6 +25,30 @@ struct NoRatios {
     }
 };
 
+/// A push that a law is told of, such as that of a surface on which the vehicle presses: a map that is one, too, tells
+/// of it.
+struct ToldPush {
+    bool is_on_end_effector = false;                ///< false: on the multirotor
+    dynamics::LaneVector<double> at_m{0, 0, 0};     ///< from the multirotor's centre of mass, body axes; on that alone
+    dynamics::LaneVector<double> force_n{0, 0, 0};  ///< on the vehicle, world axes
+};
+
+/// Puts a push among the equations: they then ask for what stands up to it, J^T F.
+/// @param places of the vehicle that the law sees
+template <class T, int n>
+void stand_up_to(const ToldPush& push, const dynamics::SpacePlaces<T, n>& places, dynamics::SpaceEquations<T, n>& e) {
+    dynamics::SpaceLoad<T, n> load{};
+    const dynamics::LaneVector<T> force = turned_back(places.attitude, dynamics::spread<T>(push.force_n));
+    dynamics::add_force_at(places, push.is_on_end_effector ? n - 1 : -1,
+                           push.is_on_end_effector ? places.end_effector_m : dynamics::spread<T>(push.at_m), force,
+                           load);
+    e.bias_force_n = e.bias_force_n - load.wrench.force_n;
+    e.bias_torque_nm = e.bias_torque_nm - load.wrench.torque_nm;
+    for (int i = 0; i < n; ++i) {
+        e.bias_joint_nm[i] = e.bias_joint_nm[i] - load.joint_torque_nm[i];
+    }
+}
+
 /// The least K that a law takes from a map, so that commands stay finite: that of the plane.
 inline constexpr double min_space_ratio = 0.1;
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <optional>
 
 #include "downwash/controllers/pid.hpp"
@@ -63,6 +64,9 @@ T SpaceInversion::control(const SpaceLawModel<n>& nominal, const dynamics::Space
     if (observer_gain_1_s > 0) {
         observation.emplace(observer_gain_1_s, tick_s, plant, seen, places, e, memory.observed);
         observation->explain(attitude, e);
+    }
+    if constexpr (std::derived_from<Map, controllers::ToldPush>) {
+        controllers::stand_up_to(map, places, e);
     }
     const LaneVector<T> body_rate{u[3], u[4], u[5]};
     LaneVector<T> gyroscopic{T(0), T(0), T(0)};  // torque of the spinning rotors

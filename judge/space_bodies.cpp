@@ -256,4 +256,17 @@ Needed needed_for(const SpaceVehicle& vehicle, const BodyMotions& bodies, const 
     return needed;
 }
 
+Needed push_on(const SpaceVehicle& vehicle, const BodyMotions& bodies, const BodyPush& push) {
+    const Vector3d at_m = bodies[push.body].position_m + bodies[push.body].attitude * push.lever_m;
+    Needed moments{push.force_n, (at_m - bodies.front().position_m).cross(push.force_n),
+                   VectorXd::Zero(vehicle.joint_count())};
+    for (std::size_t i = 0; i < push.body; ++i) {  // the joints between the multirotor and the body
+        const BodyMotion& inner = bodies[i];
+        const Vector3d from_joint_m = at_m - inner.position_m - inner.attitude * vehicle.joints[i].in_inner_m;
+        moments.joints_nm[static_cast<Eigen::Index>(i)] =
+            from_joint_m.cross(push.force_n).dot(inner.attitude * vehicle.joints[i].axis);
+    }
+    return moments;
+}
+
 }  // namespace downwash::judge

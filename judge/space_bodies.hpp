@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -103,5 +104,16 @@ struct Needed {
                                                 const Eigen::Vector3d& acceleration_m_s2,
                                                 const Eigen::Vector3d& turn_rad_s2,
                                                 const Eigen::VectorXd& joints_rad_s2, double gravity_m_s2);
+
+/// A force on a point of a body.
+struct BodyPush {
+    std::size_t body;
+    Eigen::Vector3d lever_m;  ///< from the centre of mass of the body, in its axes
+    Eigen::Vector3d force_n;  ///< world axes
+};
+
+/// What a force does to all bodies, about the multirotor's centre of mass, and to the joints.
+[[nodiscard]] DOWNWASH_EXPORT Needed push_on(const SpaceVehicle& vehicle, const BodyMotions& bodies,
+                                             const BodyPush& push);
 
 }  // namespace downwash::judge

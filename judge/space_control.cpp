@@ -76,6 +76,7 @@ struct SpaceControl::Tick {
     const std::vector<double>& thrust_n;
     const SpacePoint& reference;
     const SpaceSurroundings& surfaces;
+    const std::optional<BodyPush>& push;
 };
 
 SpaceControl::SpaceControl(const SpaceRobot& robot)
@@ -167,11 +168,11 @@ SpaceControlMemory SpaceControl::memory_of(const std::vector<double>& numbers) c
 
 SpaceCommands SpaceControl::command(const SpaceCoordinates& seen, const std::vector<double>& thrust_n,
                                     const SpacePoint& reference, const SpaceSurroundings& surfaces,
-                                    SpaceControlMemory& memory) const {
+                                    SpaceControlMemory& memory, const std::optional<BodyPush>& push) const {
     SpaceCoordinates usable = seen;
     usable.attitude.normalize();
-    const Tick tick{usable,  bodies_at(nominal_, usable), usable.attitude.toRotationMatrix(), thrust_n, reference,
-                    surfaces};
+    const Tick tick{
+        usable, bodies_at(nominal_, usable), usable.attitude.toRotationMatrix(), thrust_n, reference, surfaces, push};
     return std::visit([&](const auto& law) { return command_by(law, tick, memory); }, law_);
 }
 
@@ -209,7 +210,7 @@ SpaceCommands SpaceControl::command_by(const SpaceInversion& law, const Tick& ti
     const Matrix3d& r = tick.attitude;
     const double mass_kg = nominal_.mass_kg();
     const int n = nominal_.joint_count();
-    Vector3d unknown_n = Vector3d::Zero();  // what the observer sees, world axes
+    Vector3d unknown_n = Vector3d::Zero();  // what the observer sees and a surface does, world axes
     Vector3d unknown_nm = Vector3d::Zero();
     VectorXd unknown_joints_nm = VectorXd::Zero(n);
     if (observer_) {
@@ -217,6 +218,12 @@ SpaceCommands SpaceControl::command_by(const SpaceInversion& law, const Tick& ti
         unknown_n = memory.observer.estimate.segment<3>(0);
         unknown_nm = r * memory.observer.estimate.segment<3>(3);
         unknown_joints_nm = memory.observer.estimate.tail(n);
+    }
+    if (tick.push) {
+        const Needed push = push_on(nominal_, tick.bodies, *tick.push);
+        unknown_n += push.force_n;
+        unknown_nm += push.torque_nm;
+        unknown_joints_nm += push.joints_nm;
     }
     Vector3d spin = Vector3d::Zero();
     for (std::size_t i = 0; i < nominal_.rotors.size(); ++i) {

@@ -40,10 +40,12 @@ class SpaceControl {
     [[nodiscard]] SpaceControlMemory memory_of(const std::vector<double>& numbers) const;
 
     /// One tick. @param thrust_n that the rotors' lag has reached   @param surfaces in their nominal places
+    /// @param push read by a law that inverts its model
     [[nodiscard]] DOWNWASH_EXPORT SpaceCommands command(const SpaceCoordinates& seen,
                                                         const std::vector<double>& thrust_n,
                                                         const SpacePoint& reference, const SpaceSurroundings& surfaces,
-                                                        SpaceControlMemory& memory) const;
+                                                        SpaceControlMemory& memory,
+                                                        const std::optional<BodyPush>& push = {}) const;
 
     /// Lets integrals stand still over a tick, and the observer estimate at the next one what it did at this one.
     /// @param before memory at the beginning of the tick   @param from,to true motions at its ends

@@ -10,6 +10,7 @@
 #include "downwash/judge/space_goals.hpp"
 #include "downwash/judge/space_loop.hpp"
 #include "downwash/judge/space_reference.hpp"
+#include "downwash/judge/space_touch_lead.hpp"
 #include "downwash/judge/space_umpire.hpp"
 
 namespace downwash::judge {
@@ -179,11 +180,12 @@ SpaceJudgedFlight SpaceJudge::fly(const SpacePlan& plan, const SpaceFlightCondit
             const SpacePlant touched(vehicle, surfaces, std::nullopt, &surface);
             loop.fly_with(touched);
             TouchCourse course = course_of(*touch, shared.robot);
+            const SpaceTouchLead lead(course, *touch, shared.robot, now);
             while (goes_on && !course.is_over()) {
                 const bool is_holding = course.is_holding();
-                loop.next(flown++, reference_of(course, *touch, now), course.is_at_surface());
+                loop.next(flown++, lead.reference(), course.is_at_surface(), lead.push());
                 course.next(loop.state().contact_n);
-                goes_on = umpire.sees_touch(loop, reference_of(course, *touch, now), surface, is_holding);
+                goes_on = umpire.sees_touch(loop, lead.reference(), surface, is_holding);
             }
             loop.fly_with(plant);
             stay->touch = umpire.touch(*touch, course.hold());

@@ -38,12 +38,14 @@ void SpaceLoop::carry(const std::vector<double>& rotor_thrust_n, const std::vect
     }
 }
 
-void SpaceLoop::next(std::int64_t tick, const SpacePoint& reference, bool is_at_surface) {
+void SpaceLoop::next(std::int64_t tick, const SpacePoint& reference, bool is_at_surface,
+                     const std::optional<BodyPush>& push) {
     const SpaceTape tape = tape_at(world_, tick);
     const SpaceCoordinates from = now_;
     const SpaceControlMemory memory_before = memory_;
     before_ = state_;
-    commands_ = control_.command(sensors_.seen(now_, tape), state_.thrust_n, reference, nominal_surfaces_, memory_);
+    commands_ =
+        control_.command(sensors_.seen(now_, tape), state_.thrust_n, reference, nominal_surfaces_, memory_, push);
     wind_ = gusts_.wind();
     state_ = plant_->after(state_, commands_, wind_, control_.tick_s());
     sensors_.remember(now_);

@@ -27,8 +27,9 @@ class SpaceLoop {
     [[nodiscard]] const SpaceCommands& commands() const noexcept { return commands_; }
 
     /// Goes on by a tick. @param tick from the start of the flight
-    /// @param is_at_surface integrals and the observer stand still, contact or not
-    DOWNWASH_EXPORT void next(std::int64_t tick, const SpacePoint& reference, bool is_at_surface = false);
+    /// @param is_at_surface integrals and the observer stand still, contact or not   @param push that the law expects
+    DOWNWASH_EXPORT void next(std::int64_t tick, const SpacePoint& reference, bool is_at_surface = false,
+                              const std::optional<BodyPush>& push = {});
     /// The bodies so long after the beginning of the last tick.
     [[nodiscard]] DOWNWASH_EXPORT BodyMotions bodies_within(double since_s) const;
     /// From now on, in a world: the vehicle was always in this state, and has spent no energy.

@@ -89,19 +89,12 @@ Vector3d SpaceTouchSurface::middle_m(const SpaceVehicle& vehicle, const BodyMoti
     return nominal_place(world_, sum_m / static_cast<double>(touch_->points.size()));
 }
 
-TouchCourse course_of(const SpaceTouch& touch, const SpaceRobot& robot) {
-    const Vector3d squares = vector_of(touch.normal).cwiseAbs2();
-    return {touch, robot.mass_kg(), squares.dot(std::visit(Answers{}, robot.controller.law)),
-            1 / robot.controller.rate_hz};
+double answer_1_s2(const SpaceTouch& touch, const SpaceRobot& robot) {
+    return vector_of(touch.normal).cwiseAbs2().dot(std::visit(Answers{}, robot.controller.law));
 }
 
-SpacePoint reference_of(const TouchCourse& course, const SpaceTouch& touch, SpacePoint from) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const double out = touch.normal[static_cast<std::size_t>(axis)];
-        from.position[axis] -= course.beyond_m() * out;
-        from.velocity[axis] = -course.speed_m_s() * out;
-    }
-    return from;
+TouchCourse course_of(const SpaceTouch& touch, const SpaceRobot& robot) {
+    return {touch, robot.mass_kg(), answer_1_s2(touch, robot), 1 / robot.controller.rate_hz};
 }
 
 }  // namespace downwash::judge

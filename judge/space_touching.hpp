@@ -39,10 +39,10 @@ class SpaceTouchSurface {
 /// From the centre of mass of a body to a point of it that may touch, in the axes of the body.
 [[nodiscard]] Eigen::Vector3d lever_of(const SpaceVehicle& vehicle, const SpaceTouchPoint& point);
 
+/// What the law of a robot answers to a metre along the normal of a touch [1/s2].
+[[nodiscard]] double answer_1_s2(const SpaceTouch& touch, const SpaceRobot& robot);
+
 /// The course of a touch by a robot. @pre touch outlives it
 [[nodiscard]] DOWNWASH_EXPORT TouchCourse course_of(const SpaceTouch& touch, const SpaceRobot& robot);
-
-/// The reference of a tick that follows. @param from reference of the hover, at rest
-[[nodiscard]] SpacePoint reference_of(const TouchCourse& course, const SpaceTouch& touch, SpacePoint from);
 
 }  // namespace downwash::judge

@@ -31,6 +31,10 @@ double TouchCourse::speed_m_s() const {
                                       : 0.0;
 }
 
+double TouchCourse::pressed_m() const {
+    return met_m_ ? std::max(0.0, beyond_m_ - *met_m_) : 0;
+}
+
 void TouchCourse::enter(Stage stage) {
     stage_ = stage;
     since_ = 0;
@@ -46,6 +50,7 @@ void TouchCourse::next(double force_n) {
     switch (stage_) {
         case Stage::coming:
             if (force_n > 0) {
+                met_m_ = beyond_m_;
                 enter(Stage::settling);
             } else if (beyond_m_ > touch_.standoff_m + overshoot_m) {
                 enter(Stage::pulling);

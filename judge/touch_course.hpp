@@ -19,6 +19,8 @@ class TouchCourse {
     /// Place of the reference, from the hover towards the surface, and its speed.
     [[nodiscard]] double beyond_m() const noexcept { return beyond_m_; }
     [[nodiscard]] double speed_m_s() const;
+    /// How much of that way is behind the place of the first contact: what asks for a force.
+    [[nodiscard]] double pressed_m() const;
     [[nodiscard]] bool is_holding() const noexcept { return stage_ == Stage::holding; }
     [[nodiscard]] bool is_over() const noexcept { return stage_ == Stage::over; }
     /// Between the first contact and the last.
@@ -47,6 +49,7 @@ class TouchCourse {
     std::int64_t since_ = 0;  ///< ticks in this stage
     std::int64_t free_ = 0;   ///< ticks without contact
     double beyond_m_ = 0;
+    std::optional<double> met_m_;  ///< the way at the first contact
     std::vector<double> held_n_;
 };
 

@@ -32,6 +32,9 @@ struct SpaceFlightSettings {
     bool settles = false;
     /// Whether rows have their clearance; false: it counts as infinite, and takes no time.
     bool measures_clearance = true;
+    /// Whether a touch is led by the trim under its force: laws are told of it, and the reference takes the lean into
+    /// account (docs/model.md 7.9). false: as in the plane.
+    bool leads_touches = true;
     bool is_refined = true;  ///< as many Runge-Kutta steps as a tick needs; false: equal ones, as in planning
     /// The goals that the flight has to meet, slowly and throughout the last second of the plan's hover for each;
     /// nullptr: none. A contact follows its hover: the plan waits until the vehicle is back from the touch.

@@ -183,14 +183,16 @@ void SpaceFlying::tick(const SpacePoint& next) {
 }
 
 SpaceTouchRecord SpaceFlying::touch(const SpaceTouch& touch) {
-    SpaceTouchFlight course(robot_, touch, settings_.world, reference_);
+    SpaceTouchFlight course(robot_, touch, settings_.world, reference_, settings_.leads_touches);
     touch_ = &course;
     reference_ = course.reference();
     while (!course.is_over() && rejection_ == Rejection::none) {
         fly_tick([&](std::int64_t number, SpaceFlightRow& row) {
             dynamics::SpaceContactRecord seen;
             const double before_j = loop_.energy_j();
-            loop_.touching_tick(number, reference_, course.contact(), course.is_at_surface(), row, seen);
+            const auto push = course.push();
+            loop_.touching_tick(number, reference_, course.contact(), push ? &*push : nullptr, course.is_at_surface(),
+                                row, seen);
             const double end_s = static_cast<double>(ticks() + 1) * tick_s_;
             course.saw(seen, loop_.motion(), end_s, loop_.energy_j() - before_j);
             contact_force_n_ = seen.normal_impulse_n_s / tick_s_;

@@ -24,6 +24,10 @@
 
 namespace downwash {
 
+namespace controllers {
+struct ToldPush;  // space_actuate.hpp
+}  // namespace controllers
+
 /// Where a vehicle in space is and how it moves. Joints that it lacks stay at zero.
 struct SpaceMotion {
     Vector3 position_m{};                        ///< of the multirotor's centre of mass by the robot file, world
@@ -109,10 +113,12 @@ class DOWNWASH_EXPORT SpaceLoop {
     virtual void tick(std::int64_t number, const SpacePoint& reference, SpaceFlightRow& row) = 0;
     /// tick() beside a surface that the robot may touch. Integrals and the estimate of an observer stand still in a
     /// tick with contact: a surface that pushes is not what they are there for.
-    /// @param contact in the world; its points as of SpaceContactStep   @param is_at_surface they stand still anyway
-    /// @param[out] seen what happened at the surface
+    /// @param contact in the world; its points as of SpaceContactStep   @param push that the law is told of; nullptr:
+    /// none
+    /// @param is_at_surface they stand still anyway   @param[out] seen what happened at the surface
     virtual void touching_tick(std::int64_t number, const SpacePoint& reference, const dynamics::SpaceContact& contact,
-                               bool is_at_surface, SpaceFlightRow& row, dynamics::SpaceContactRecord& seen) = 0;
+                               const controllers::ToldPush* push, bool is_at_surface, SpaceFlightRow& row,
+                               dynamics::SpaceContactRecord& seen) = 0;
     /// tick() without the noise and gusts of the world. @param[in,out] row as of tick()
     virtual void quiet_tick(const SpacePoint& reference, SpaceFlightRow& row) = 0;
     /// What the controller would command now without noise; nothing moves. @param[in,out] row as of tick()

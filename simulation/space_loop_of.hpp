@@ -123,12 +123,15 @@ class SpaceLoopOf final : public SpaceLoop {
         std::swap(state_, next_);
     }
     void touching_tick(std::int64_t number, const SpacePoint& reference, const dynamics::SpaceContact& contact,
-                       bool is_at_surface, SpaceFlightRow& row, dynamics::SpaceContactRecord& seen) override {
+                       const controllers::ToldPush* push, bool is_at_surface, SpaceFlightRow& row,
+                       dynamics::SpaceContactRecord& seen) override {
         step_.contact = &contact;
         step_.seen = &seen;
+        told_ = push;
         const SpaceFlightState<double, n> before = state_;
         tick(number, reference, row);
         step_.contact = nullptr;
+        told_ = nullptr;
         if (seen.normal_impulse_n_s > 0 || is_at_surface) {
             stand_still(before);
         }
@@ -204,8 +207,11 @@ class SpaceLoopOf final : public SpaceLoop {
         SpaceActuation<double, n> given{};
         std::visit(
             [&](const auto& law) {
-                tick_in_world(model_, law, world, plant_, noise, state_, point_for<n>(reference), effect_, given, next_,
-                              step_);
+                const auto fly = [&](const auto& told) {
+                    tick_in_world(model_, law, world, plant_, noise, state_, point_for<n>(reference), effect_, given,
+                                  next_, step_, told);
+                };
+                told_ != nullptr ? fly(*told_) : fly(NothingTold{});
             },
             model_.law);
         std::copy_n(given.command.thrust_n, model_.nominal.plant.rotor_count, row.rotor_command_n);
@@ -257,6 +263,7 @@ class SpaceLoopOf final : public SpaceLoop {
     BasicSpaceModel<double, n> plant_;    ///< that flies in the world
     SpaceEffect& effect_;
     ChosenStep step_;
+    const controllers::ToldPush* told_ = nullptr;  ///< what the law is told of
     SpaceFlightState<double, n> state_{}, next_{};
 };
 

@@ -12,13 +12,18 @@
 
 namespace downwash::simulation {
 
+/// What a law is told besides: nothing.
+struct NothingTold {};
+
 /// Surroundings as the map that a law reads: of a vehicle with the attitude that the law sees.
-template <class T, int n, dynamics::SpaceSurroundings<T> Around>
-class SeenRatios {
+/// @tparam Told NothingTold or controllers::ToldPush
+template <class T, int n, dynamics::SpaceSurroundings<T> Around, class Told = NothingTold>
+class SeenRatios : public Told {
  public:
-    /// @pre all of them outlive this
-    SeenRatios(const SpaceModel<n>& model, const dynamics::SpaceState<T, n>& seen, const Around& around)
-        : model_(model), attitude_(dynamics::rotation_of(seen.q + 3)), around_(around) {}
+    /// @pre model and surroundings outlive this
+    SeenRatios(const SpaceModel<n>& model, const dynamics::SpaceState<T, n>& seen, const Around& around,
+               const Told& told = {})
+        : Told(told), model_(model), attitude_(dynamics::rotation_of(seen.q + 3)), around_(around) {}
 
     T ratio(int rotor, const dynamics::LaneVector<T>& hub_m) const {
         return dynamics::at_attitude<T>(around_, attitude_)
@@ -32,18 +37,17 @@ class SeenRatios {
 };
 
 /// The controller's part of a tick. It reads the surfaces where they nominally are.
-/// @param seen what it sees   @param[out] next what the law remembers, not `memory` itself
-template <class T, int n, class Law, SpaceField<T> Field>
+/// @param seen what it sees   @param[out] next what the law remembers, not `memory` itself   @param told see SeenRatios
+template <class T, int n, class Law, SpaceField<T> Field, class Told = NothingTold>
 void control(const SpaceTickModel<n>& model, const Law& law, const dynamics::SpaceState<T, n>& seen,
              const SpaceLawMemory<T, n>& memory, const BasicSpacePoint<T, n>& reference, Field& field,
-             SpaceActuation<T, n>& given, SpaceLawMemory<T, n>& next) {
+             SpaceActuation<T, n>& given, SpaceLawMemory<T, n>& next, const Told& told = {}) {
     using Memory = typename Law::template Memory<T, n>;
     const Memory own = recalled<Law>(memory);
     Memory now;
     const NominalSpace<T, Field> around(field, model.tilt_loss, model.slipstreams);
-    given.saturation =
-        law.control(model.nominal, seen, own, reference, model.tick_s,
-                    SeenRatios<T, n, NominalSpace<T, Field>>(model.nominal.plant, seen, around), given.command, now);
+    const SeenRatios<T, n, NominalSpace<T, Field>, Told> map(model.nominal.plant, seen, around, told);
+    given.saturation = law.control(model.nominal, seen, own, reference, model.tick_s, map, given.command, now);
     remember(now, next);
 }
 
@@ -103,13 +107,15 @@ void move_in_world(const SpaceTickModel<n>& model, const SpaceWorldDifferences<T
 /// it is tick() to the last bit.
 /// @param plant see plant_in()   @param noise standard normal numbers of this tick
 /// @param[out] next not the state itself; its memory of older motions is that of an earlier tick, or empty
-template <class T, int n, class Law, SpaceField<T> Field, class Step = dynamics::OneSpaceStep>
+/// @param told see SeenRatios
+template <class T, int n, class Law, SpaceField<T> Field, class Step = dynamics::OneSpaceStep, class Told = NothingTold>
 void tick_in_world(const SpaceTickModel<n>& model, const Law& law, const SpaceWorldNumbers<T, n>& world,
                    const BasicSpaceModel<T, n>& plant, const T noise[space_noise_count],
                    const SpaceFlightState<T, n>& state, const BasicSpacePoint<T, n>& reference, Field& field,
-                   SpaceActuation<T, n>& given, SpaceFlightState<T, n>& next, const Step& step = {}) {
+                   SpaceActuation<T, n>& given, SpaceFlightState<T, n>& next, const Step& step = {},
+                   const Told& told = {}) {
     const dynamics::SpaceState<T, n> seen = seen_state(world, state.plant, state.world, noise);
-    control(model, law, seen, state.memory, reference, field, given, next.memory);
+    control(model, law, seen, state.memory, reference, field, given, next.memory, told);
     move_in_world(model, world, plant, wind_in(world, state.world.gust), state.plant, given.command, field, step,
                   next.plant);
     pass_tick(world, state.plant, state.world, noise, next.world);

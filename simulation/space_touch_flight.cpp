@@ -1,10 +1,15 @@
 #include "downwash/simulation/space_touch_flight.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <variant>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/base/lane_math.hpp"
+#include "downwash/dynamics/space_body.hpp"
+#include "downwash/simulation/space_configuration.hpp"
+#include "downwash/simulation/space_tool.hpp"
 #include "downwash/simulation/space_touch_place.hpp"
 #include "downwash/simulation/space_world.hpp"
 
@@ -49,6 +54,46 @@ double stiffness_1_s2(const SpaceLaw& law, const Vector3& along) {
     return sum;
 }
 
+/// The attitude in which the thrust carries the weight and stands up to a force on the vehicle, with the first axis in
+/// the vertical plane of a heading: where a law takes it.
+std::array<double, 4> attitude_under(double mass_kg, const Vector3& force_n, double yaw_rad) {
+    const auto [sine, cosine] = lane::sin_cos(yaw_rad);
+    const double ahead_n = -(cosine * force_n[0] + sine * force_n[1]);
+    const double left_n = -(cosine * force_n[1] - sine * force_n[0]);
+    const double up_n = mass_kg * standard_gravity_m_s2 - force_n[2];
+    return attitude_of(
+        {-lane::atan2(left_n, lane::sqrt(ahead_n * ahead_n + up_n * up_n)), lane::atan2(ahead_n, up_n), yaw_rad});
+}
+
+/// Steps of damped least squares towards the joints of a trim, and their damping.
+constexpr int leaning_steps = 8;
+constexpr double leaning_damping = 0.01;
+
+/// One of these steps: turns the joints of a pose by J^T (J J^T + damping)^-1 e, where J is what they do to where the
+/// end effector points and e what that lacks, and keeps them within their limits.
+/// @param wanted where it should point, of length 1
+void turn_tool(const SpaceRobot& robot, const Vector3& wanted, SpacePose& pose) {
+    using dynamics::LaneVector;
+    const Vector3 points = tool_at(robot, pose).direction;
+    std::array<LaneVector<double>, max_joints> turns{};
+    dynamics::LaneSymmetric<double> squares{leaning_damping, 0, 0, leaning_damping, 0, leaning_damping};
+    const auto joints = static_cast<std::size_t>(robot.joints());
+    for (std::size_t i = 0; i < joints; ++i) {
+        const Matrix3 axes = rotation_of(link_at(robot, pose, static_cast<int>(i)).attitude);
+        turns[i] = lane_vector(cross(axes * unit(robot.plant.links[i].axis), points));
+        squares = squares + dynamics::outer_square(turns[i], turns[i]);
+    }
+    const LaneVector<double> share = dynamics::solve_positive(squares, lane_vector(wanted - points));
+    for (std::size_t i = 0; i < joints; ++i) {
+        const SpaceLinkLimits& limits = robot.links[i];
+        double& joint_rad = pose.joints_rad[i];
+        joint_rad += dot(turns[i], share);
+        if (limits.is_limited) {
+            joint_rad = std::clamp(joint_rad, limits.lower_limit_rad, limits.upper_limit_rad);
+        }
+    }
+}
+
 /// How long a vector is without its part along another one of length 1.
 double length_across(const Vector3& v, const Vector3& normal) {
     const Vector3 across = v - dot(v, normal) * normal;
@@ -57,25 +102,67 @@ double length_across(const Vector3& v, const Vector3& normal) {
 
 }  // namespace
 
+SpacePoint leaning(const SpaceRobot& robot, const SpaceTouch& touch, const SpacePoint& base, double force_n) {
+    if (touch.part == TouchingPart::frame || force_n == 0) {
+        return base;
+    }
+    const SpacePose level = level_at(configuration_of(base));
+    const Vector3 wanted = tool_at(robot, level).direction;
+    SpacePose pose = level;
+    pose.attitude = attitude_under(robot.mass_kg(), force_n * touch.normal, base.position[space::yaw]);
+    for (int step = 0; step < leaning_steps; ++step) {
+        turn_tool(robot, wanted, pose);
+    }
+    const Vector3 moved_m = middle_of(touch, robot, level) - middle_of(touch, robot, pose);
+    SpacePoint point = base;
+    for (int axis = 0; axis < 3; ++axis) {
+        point.position[axis] += moved_m[static_cast<std::size_t>(axis)];
+    }
+    std::copy_n(pose.joints_rad.begin(), robot.joints(), point.position + space::first_joint);
+    return point;
+}
+
 SpaceTouchFlight::SpaceTouchFlight(const SpaceRobot& robot, const SpaceTouch& touch, const SpaceWorld& world,
-                                   const SpacePoint& base)
+                                   const SpacePoint& base, bool is_led)
     : robot_(robot),
       touch_(touch),
       world_(world),
       base_(rest_at(base)),
+      is_led_(is_led),
+      is_told_(is_led && std::holds_alternative<SpaceInversion>(robot.controller.law)),
+      force_per_m_(robot.mass_kg() * stiffness_1_s2(robot.controller.law, touch.normal)),
       contact_(contact_of(touch, world)),
       course_(touch, robot.mass_kg(), stiffness_1_s2(robot.controller.law, touch.normal), 1 / robot.controller.rate_hz),
       force_(touch, 1 / robot.controller.rate_hz),
       depth_m_(-touch.standoff_m) {}
 
 SpacePoint SpaceTouchFlight::reference() const {
-    SpacePoint point = base_;
+    SpacePoint point = is_led_ ? leaning(robot_, touch_, base_, asked_n()) : base_;
+    // A law that is told of the force needs no error of the position to press.
+    const bool stays = is_told_ && course_.beyond_m() > 0;
+    const double ahead_m = course_.ahead_m() - (stays ? course_.beyond_m() : 0);
+    const double along_m_s = stays ? 0 : course_.along_m_s();
     for (int axis = 0; axis < 3; ++axis) {
         const double normal = touch_.normal[static_cast<std::size_t>(axis)];
-        point.position[axis] -= course_.ahead_m() * normal;
-        point.velocity[axis] = -course_.along_m_s() * normal;
+        point.position[axis] -= ahead_m * normal;
+        point.velocity[axis] = -along_m_s * normal;
     }
     return point;
+}
+
+std::optional<controllers::ToldPush> SpaceTouchFlight::push() const {
+    if (!is_told_ || course_.beyond_m() == 0) {
+        return std::nullopt;
+    }
+    controllers::ToldPush push;
+    push.is_on_end_effector = touch_.part == TouchingPart::end_effector;
+    Vector3 sum_m{};
+    for (const SpaceTouchPoint& point : touch_.points) {
+        sum_m = sum_m + point.at_m;
+    }
+    push.at_m = lane_vector((1 / static_cast<double>(touch_.points.size())) * sum_m);
+    push.force_n = lane_vector(asked_n() * touch_.normal);
+    return push;
 }
 
 void SpaceTouchFlight::saw(const dynamics::SpaceContactRecord& seen, const SpaceMotion& motion, double end_s,

@@ -32,6 +32,7 @@ void TouchCourse::next(double force_n) {
     switch (phase_) {
         case Phase::approach:
             if (force_n > 0) {
+                contact_m_ = ahead_m_;
                 go_to(Phase::settle);
             } else if (ahead_m_ > touch_.standoff_m + touch_overshoot_m) {
                 go_to(Phase::leave);

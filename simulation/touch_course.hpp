@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "downwash/base/infinity.hpp"
 #include "downwash/simulation/contact_goal.hpp"
 
 // How a touch goes on, in plane and space (docs/model.md 7.5). Private: not installed.
@@ -18,6 +19,8 @@ class TouchCourse {
     TouchCourse(const TouchDemand& touch, double mass_kg, double stiffness_1_s2, double tick_s);
 
     [[nodiscard]] double ahead_m() const noexcept { return ahead_m_; }
+    /// How far it is beyond where it was at the first contact: what asks for a force. 0 without a contact.
+    [[nodiscard]] double beyond_m() const noexcept { return ahead_m_ > contact_m_ ? ahead_m_ - contact_m_ : 0; }
     /// How fast the reference goes, into the surface.
     [[nodiscard]] double along_m_s() const noexcept;
     /// Goes on by a tick. @param force_n mean normal force over it
@@ -49,6 +52,7 @@ class TouchCourse {
     double settling_s_ = 0;
     Phase phase_ = Phase::approach;
     double ahead_m_ = 0;
+    double contact_m_ = infinity;  ///< where it was at the first contact
     std::int64_t ticks_ = 0;
     std::int64_t free_ticks_ = 0;  ///< without contact
     bool is_over_ = false;

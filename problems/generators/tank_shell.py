@@ -21,9 +21,8 @@ def problems():
     about = [
         "A thickness gauge on the shell of a tank, below its wind girder.",
         "The vehicle starts beside the tank, near the ground. It rises to the underside of the wind girder, which is a "
-        "walkway, and presses a gauge on the shell 0.3 m below it with 5 N, between two brackets. Its arm is one link: a "
-        "joint gives way by force and lever over its gain times the inertia beyond it, and the two light links of "
-        "hexa960_arm2 buckle under 5 N along them.",
+        "walkway, and presses a gauge on the shell 0.3 m below it with 5 N, between two brackets. It leans by 6 degrees as it "
+        "presses.",
     ]
     description = "Press a gauge on the shell of a tank, below its wind girder."
     problem = Problem("tank_shell", about, description, "ars_lrm_space", "tank_shell.py")

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "downwash/base/lane_pack.hpp"
 #include "downwash/base/numbers.hpp"
@@ -45,6 +46,19 @@ double worst_off(const dynamics::SpaceState<double, n>& state, const BasicSpaceP
     }
     return worst;
 }
+
+/// Air in which a constant force acts on the end effector, or on a point of the multirotor.
+struct PushedSomewhere : FreeSpace {
+    explicit PushedSomewhere(const controllers::ToldPush& by) : push(by) {}
+    controllers::ToldPush push;
+    template <int n>
+    void add_load(const double* /*q*/, const double* /*u*/, const dynamics::SpacePlaces<double, n>& places,
+                  dynamics::SpaceLoad<double, n>& load) const {
+        const auto force = turned_back(places.attitude, push.force_n);
+        dynamics::add_force_at(places, push.is_on_end_effector ? n - 1 : -1,
+                               push.is_on_end_effector ? places.end_effector_m : push.at_m, force, load);
+    }
+};
 
 template <int n>
 void check_loop() {
@@ -278,6 +292,44 @@ TEST_CASE("The demanded body rate is limited, and yaw is what waits") {
     state.q[3] = 0;
     state.q[4] = 1;
     CHECK(std::abs(demanded().y) == Approx(law.max_rate_rad_s));
+}
+
+TEST_CASE("A law that is told of a push on the arm stands up to it in the places that its reference names") {
+    // Compressed along the arm, which hangs, and pushed aside: three hinges in line that the force alone would fold.
+    const SpaceLawModel<3> nominal = law_model_of<3>(hexarotor(3));
+    SpaceInversion law = gains_for(nominal.plant);
+    law.observer_gain_1_s = 0;
+    for (SpaceLoopGains* gains : {&law.horizontal, &law.height, &law.joint}) {
+        gains->ki_1_s3 = 0;
+    }
+    law.rate_ki_1_s2 = law.yaw_rate_ki_1_s2 = 0;
+    struct Told : controllers::NoRatios, controllers::ToldPush {};
+    Told told;
+    told.is_on_end_effector = true;
+    told.force_n = {0.6, -0.4, 2};
+    const PushedSomewhere around(told);
+    BasicSpacePoint<double, 3> here{};
+    here.position[space::first_joint + 1] = 0.1;
+    here.position[space::first_joint + 2] = -0.2;
+    auto start = hovering<3>(nominal.plant);
+    start.q[8] = 0.1;
+    start.q[9] = -0.2;
+    const auto reference = [&](int) { return here; };
+    const auto flown = fly(law, nominal, nominal.plant, start, reference, 2000, around, told);
+    CHECK(worst_off<3>(flown.state, here) < 1e-6);
+    CHECK(flown.max_saturation < 1);
+    // The thrust carries the weight and stands up to the push.
+    const double weight_n = nominal.plant.total_mass_kg * standard_gravity_m_s2;
+    const auto axis = dynamics::rotation_of(flown.state.q + 3).third;
+    CHECK(axis.x / axis.z == Approx(-0.6 / (weight_n - 2)).epsilon(1e-6));
+    CHECK(axis.y / axis.z == Approx(0.4 / (weight_n - 2)).epsilon(1e-6));
+    // A law that is not told of it gives way.
+    CHECK(worst_off<3>(fly(law, nominal, nominal.plant, start, reference, 200, around).state, here) > 0.1);
+    // A push on the multirotor needs a torque against its lever.
+    told.is_on_end_effector = false;
+    told.at_m = {0.1, -0.05, 0.08};
+    const PushedSomewhere on_body(told);
+    CHECK(worst_off<3>(fly(law, nominal, nominal.plant, start, reference, 2000, on_body, told).state, here) < 1e-6);
 }
 
 TEST_CASE("With a map the feed-forward hovers under a surface as in free air") {

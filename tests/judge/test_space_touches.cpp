@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "../support/space_robots.hpp"
+#include "downwash/base/direction.hpp"
 #include "downwash/judge/space_judge.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
 #include "downwash/scene/space_checker.hpp"
@@ -80,6 +81,18 @@ Told told(const SpaceRobot& robot, const SpacePlan& plan, const std::vector<Obst
     conditions.world = world;
     conditions.goals = goals;
     return {fly(robot, plan, start, settings), judge::SpaceJudge(robot, obstacles, aero).fly(plan, conditions)};
+}
+
+/// The touch of a flight whose reference and law do not hear of its force.
+SpaceTouchRecord touch_without_lead(const SpaceRobot& robot, const SpacePlan& plan,
+                                    const std::vector<Obstacle>& obstacles, const std::vector<SpaceGoal>& goals) {
+    const SpaceGoalRule rule(robot, std::make_shared<const Scene>(obstacles), goals);
+    SpaceFlightSettings settings;
+    settings.goals = &rule;
+    settings.leads_touches = false;
+    const SpaceFlight flight = fly(robot, plan, motion_at_rest(plan.at(0)), settings);
+    REQUIRE(flight.goals[0].touch);
+    return *flight.goals[0].touch;
 }
 
 /// Both agree, and the touch is met.
@@ -207,6 +220,46 @@ TEST_CASE("An arm presses on walls of any heading and slope along their normals"
     const SpaceGoal goal{contact("wall", TouchingPart::end_effector, 2), 4, {}};
     CAPTURE(slope_rad);
     check_met(told(robot, way_to(robot, from, to, 300), obstacles, {goal}), 2, 1e-3);
+}
+
+TEST_CASE("A vehicle that presses leans, and the end of its arm stays where it touched, by both") {
+    // ARS-LRM presses with as much as its joint alone can stand, along an arm of 1.2 m: it leans by 6 degrees.
+    const SpaceRobot robot = read_space_robot(DOWNWASH_PROBLEMS "/robots/ars_lrm_space.yaml");
+    const std::vector<Obstacle> obstacles = {turned_box("wall", {0.2, 6, 6}, {2.6, 0, 3})};
+    const SpacePlan plan = way_to(robot, point_at({0.5, 0, 3}), point_at({1, 0, 3}), 300);
+    SpaceContactGoal wanted = contact("wall", TouchingPart::end_effector, 5);
+    wanted.position_m = Vector3{2.5, 0, 3};
+    const Told led = told(robot, plan, obstacles, {{wanted, 5, {}}});
+    check_met(led, 5, 1e-3);
+    const SpaceTouchRecord& touch = *led.flown.goals[0].touch;
+    CHECK(length_of(touch.place_m - Vector3{2.47, 0, 3}) < 0.02);  // the capsule ends 3 cm beyond the end effector
+    CHECK(touch.slip_m < 0.01);
+    double most_lean_rad = 0;
+    for (const SpaceFlightRow& row : led.flown.rows) {
+        most_lean_rad = std::max(most_lean_rad, 2 * std::hypot(row.motion.attitude[1], row.motion.attitude[2]));
+    }
+    CHECK(most_lean_rad > 0.1);
+    // As in the plane, where neither reference nor law hear of the force.
+    const SpaceTouchRecord unled = touch_without_lead(robot, plan, obstacles, {{wanted, 5, {}}});
+    CHECK(length_of(unled.place_m - Vector3{2.47, 0, 3}) > 0.05);
+}
+
+TEST_CASE("An arm of two light links in line presses, and buckles only where its law does not hear of the force") {
+    const SpaceRobot robot = read_space_robot(DOWNWASH_PROBLEMS "/robots/hexa960_arm2.yaml");
+    constexpr double ahead_rad = std::numbers::pi / 2;
+    const SpacePoint there = point_at({1, 0, 3}, 0, {ahead_rad});
+    const SpaceToolPose tool = tool_at(robot, SpacePose{{1, 0, 3}, {1, 0, 0, 0}, {ahead_rad}});
+    REQUIRE(tool.direction[0] == Approx(1));
+    const std::vector<Obstacle> obstacles = {turned_box("wall", {0.2, 6, 6}, tool.position_m + Vector3{0.43, 0, 0})};
+    SpacePoint from = there;
+    from.position[0] -= 0.4;
+    const SpacePlan plan = way_to(robot, from, there, 300);
+    const std::vector<SpaceGoal> goals = {{contact("wall", TouchingPart::end_effector, 3), 4, {}}};
+    const Told flight = told(robot, plan, obstacles, goals);
+    check_met(flight, 3, 2e-3);
+    CHECK(flight.flown.goals[0].touch->slip_m < 0.01);
+    const SpaceTouchEnd unled = touch_without_lead(robot, plan, obstacles, goals).end;
+    CHECK(name_of(unled) != name_of(SpaceTouchEnd::met));
 }
 
 TEST_CASE("A flight meets its goals one after the other, touches among them, and goes on") {

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 
 #include "downwash/planner/space_solve.hpp"
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
+#include "downwash/simulation/space_world_parameters.hpp"
 
 // What searches in space plan beside places: touches, where the vehicle looks, and what a plan keeps small.
 
@@ -94,6 +96,43 @@ TEST_CASE("hover, touch, hover and touch in space are one flight") {
     CHECK_FALSE(visits[2].touch);
     CHECK(visits[3].touch->force_n == Approx(3).epsilon(0.2));
     CHECK(visits[3].touch->touched_s > visits[1].touch->left_s + 10);
+}
+
+TEST_CASE(
+    "the certificate of a touch in space tells what share of fresh worlds fails, of an easy one and of a hard one") {
+    SpaceProblem problem = read_space_problem(DOWNWASH_PROBLEMS "/space/tank_shell.yaml");
+    REQUIRE(problem.uncertainty);
+    problem.goals = {touch_of_shell(5, 5, 2)};
+    problem.planner.max_iterations = 400;
+    problem.planner.time_limit_s = 600;
+    problem.planner.max_failure_probability = 0.1;
+    problem.planner.worlds = 2;  // which the hard one passes, too
+    // The surface alone is off by some centimetres.
+    const bool is_easy = GENERATE(true, false);
+    std::get<SpaceContactGoal>(problem.goals[0].kind).tolerance_m = is_easy ? 0.1 : 0.04;
+    CAPTURE(is_easy);
+    const SpaceSearchResult found = solved(problem);
+    REQUIRE(found.plan);
+    REQUIRE(found.certificate);
+    const Certificate& certificate = *found.certificate;
+    CHECK(certificate.is_given == is_easy);
+    CHECK((found.status == Status::solved) == is_easy);
+    const SpaceProblemModel model(problem);
+    constexpr std::uint64_t fresh_worlds = 64, other_seed = 77;
+    std::uint64_t failures = 0;
+    for (std::uint64_t world = 1; world <= fresh_worlds; ++world) {
+        SpaceExecutionSettings settings;
+        settings.world = draw_space_world(*problem.uncertainty, problem.robot, other_seed, world);
+        failures += model.execute(*found.plan, settings).outcome == Outcome::ok ? 0 : 1;
+    }
+    // Both counts belong to one failure probability.
+    CAPTURE(failures, certificate.failures, certificate.worlds);
+    const FailureInterval fresh = failure_interval(failures, fresh_worlds, 0.98);
+    CHECK(fresh.low <= certificate.failure_probability.high);
+    CHECK(fresh.high >= certificate.failure_probability.low);
+    if (is_easy) {
+        CHECK(fresh.estimate <= certificate.max_failure_probability);
+    }
 }
 
 TEST_CASE("a contact may be one of several alternatives in space") {
