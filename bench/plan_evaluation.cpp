@@ -100,12 +100,10 @@ SpacePlanEvaluation::SpacePlanEvaluation(SpaceProblem problem, std::uint64_t wor
 
 std::optional<WorldFigures> SpacePlanEvaluation::evaluate(const SpacePlan& plan, const std::optional<VisitOrder>& order,
                                                           const std::stop_token& stop) const {
-    const SpaceProblem problem = in_order(problem_, order);
-    const auto model = order ? std::make_shared<const SpaceProblemModel>(problem) : model_;
+    const auto model = order ? std::make_shared<const SpaceProblemModel>(in_order(problem_, order)) : model_;
     try {
         const std::vector<WorldSample> flown =
-            planning::fly_in_worlds(problem, {problem.planner.variant, model, volumes_}, 1, plan, worlds_,
-                                    [&stop] { return stop.stop_requested(); });
+            fly_in_worlds(model, volumes_, plan, worlds_, [&stop] { return stop.stop_requested(); });
         return counted(world_count_, parameters_,
                        [&](std::size_t world) { return flown[world].outcome != Outcome::ok; });
     } catch (const WorkStopped&) {

@@ -11,7 +11,6 @@
 
 #include "downwash/bench/campaign_data.hpp"
 #include "downwash/planner/space_solve.hpp"
-#include "downwash/planner/space_worlds.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/space_problem_model.hpp"
 #include "downwash/problems/visit_order.hpp"

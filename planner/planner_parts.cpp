@@ -164,7 +164,7 @@ bool survives(const Problem& problem, const PlannerModelOf<Plane>& model, int th
 
 bool survives(const SpaceProblem& problem, const PlannerModelOf<Space>& model, int threads, const SpacePlan& plan,
               std::span<const SpaceWorld> worlds, const StopCondition& is_over) {
-    return std::ranges::all_of(fly_in_worlds(problem, model, threads, plan, worlds, is_over),
+    return std::ranges::all_of(SpaceProblemWorlds(problem, model, threads).fly(plan, worlds, is_over),
                                [](const WorldSample& each) { return each.outcome == Outcome::ok; });
 }
 

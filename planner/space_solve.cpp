@@ -9,6 +9,7 @@
 #include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goals_in_order.hpp"
 #include "downwash/planner/planner_model.hpp"
+#include "downwash/planner/space_worlds.hpp"
 #include "downwash/planner/stopwatch.hpp"
 #include "downwash/problems/visit_order.hpp"
 
@@ -97,6 +98,14 @@ SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model, c
     result.map = volumes;
     result.interrupted = options.stop.stop_requested();
     return result;
+}
+
+std::vector<WorldSample> fly_in_worlds(const std::shared_ptr<const SpaceProblemModel>& model,
+                                       const std::shared_ptr<const SurfaceVolumes>& volumes, const SpacePlan& plan,
+                                       std::span<const SpaceWorld> worlds, const StopCondition& is_over, int threads) {
+    const SpaceProblem& problem = model->problem();
+    const planning::PlannerModelOf<Space> own(problem.planner.variant, model, volumes);
+    return planning::SpaceProblemWorlds(problem, own, threads).fly(plan, worlds, is_over);
 }
 
 }  // namespace downwash

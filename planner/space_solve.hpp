@@ -2,10 +2,13 @@
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "downwash/base/export.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/stop_condition.hpp"
+#include "downwash/planner/certificate.hpp"
 #include "downwash/planner/found.hpp"
 #include "downwash/planner/solve_options.hpp"
 #include "downwash/problems/space_problem.hpp"
@@ -39,5 +42,12 @@ struct SpaceSearchResult : FoundOf<planning::Space> {
 /// @pre space_planning_errors(model.problem()) is empty
 [[nodiscard]] DOWNWASH_EXPORT SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model,
                                                       const SpaceSolveOptions& options = {});
+
+/// Flies a plan through all goals of a problem in worlds, from its start, one lane each.
+/// @param volumes of the problem; nullptr: no surface acts
+/// @return one sample for each world, in their order and numbered from 1   @throws WorkStopped
+[[nodiscard]] DOWNWASH_EXPORT std::vector<WorldSample> fly_in_worlds(
+    const std::shared_ptr<const SpaceProblemModel>& model, const std::shared_ptr<const SurfaceVolumes>& volumes,
+    const SpacePlan& plan, std::span<const SpaceWorld> worlds, const StopCondition& is_over, int threads = 1);
 
 }  // namespace downwash

@@ -448,10 +448,4 @@ Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const Spac
     return certificate;
 }
 
-std::vector<WorldSample> fly_in_worlds(const SpaceProblem& problem, const PlannerModelOf<Space>& model, int threads,
-                                       const SpacePlan& plan, std::span<const SpaceWorld> worlds,
-                                       const StopCondition& is_over) {
-    return SpaceProblemWorlds(problem, model, threads).fly(plan, worlds, is_over);
-}
-
 }  // namespace downwash::planning

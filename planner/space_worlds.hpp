@@ -98,12 +98,4 @@ class SpaceProblemWorlds {
     StopCondition is_over_;  ///< what flights ask
 };
 
-/// Flies a plan through all goals of a problem in worlds, from its start, through the model's volumes.
-/// @return one sample for each world, in their order and numbered from 1   @throws WorkStopped
-[[nodiscard]] DOWNWASH_EXPORT std::vector<WorldSample> fly_in_worlds(const SpaceProblem& problem,
-                                                                     const PlannerModelOf<Space>& model, int threads,
-                                                                     const SpacePlan& plan,
-                                                                     std::span<const SpaceWorld> worlds,
-                                                                     const StopCondition& is_over);
-
 }  // namespace downwash::planning
