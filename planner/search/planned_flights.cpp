@@ -14,6 +14,7 @@
 #include "downwash/search/obstacle_labels.hpp"
 #include "downwash/search/space_flights.hpp"
 #include "downwash/simulation/execution.hpp"
+#include "downwash/simulation/space_rules.hpp"
 
 namespace downwash::planning {
 namespace {}  // namespace
@@ -43,7 +44,10 @@ std::optional<SpacePlanningRules> space_planning_rules(const SpaceProblem& probl
     rules.low_m = problem.bounds.low_m;
     rules.high_m = problem.bounds.high_m;
     rules.keeps_joint_limits = false;  // references do; an arm that hovers at a limit swings about it
-    rules.max_tracking_error_m = FlightRules{}.max_tracking_error_m;
+    // A vehicle that starts beyond this tilt first falls. It is near no reference until it has recovered.
+    const bool starts_lost = problem.start.attitude &&
+                             simulation::cosine_of_tilt(problem.start.attitude->data()) < std::cos(unstable_pitch_rad);
+    rules.max_tracking_error_m = starts_lost ? unstable_error_m : FlightRules{}.max_tracking_error_m;
     rules.max_saturation = problem.planner.max_saturation;
     rules.max_tilt_rate_rad_s = problem.planner.max_pitch_rate_rad_s.value_or(rules.max_tilt_rate_rad_s);
     return rules;
