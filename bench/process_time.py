@@ -48,11 +48,3 @@ def solve(problem, folder, seed, limit_s, options=()):
         "first_s": solution["planning"]["first_solution_wall_s"],
         "cpu_s": used.ru_utime + used.ru_stime,
     }
-
-
-def used_by(arguments):
-    """CPU time of a command of the program [s]."""
-    command = subprocess.Popen([ROOT / "build/downwash", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, used = os.wait4(command.pid, 0)
-    command.returncode = os.waitstatus_to_exitcode(status)
-    return used.ru_utime + used.ru_stime

@@ -20,16 +20,34 @@ from process_time import solve  # noqa: E402
 WORLDS_SEED = 20240917  # of the worlds; fixed before any result was seen
 
 
+def without_flyable_area(problem, work):
+    """A copy of a problem whose flyable area ends next to the surfaces: there, its models are beyond what they were fitted to."""
+    text = problem.read_text(encoding="utf-8")
+    robot = next(line.split(":", 1)[1].strip() for line in text.splitlines() if line.startswith("robot:"))
+    text = text.replace(f"robot: {robot}", f"robot: {(problem.parent / robot).resolve()}", 1)
+    copy = work / f"{problem.stem}.yaml"
+    copy.write_text(text + "aero: {min_distance_radii: 0.03}\n", encoding="utf-8")
+    return copy
+
+
 def failures(problem, plan, runs):
-    """In the nominal world and over worlds: of a plan by the judge, and how most of them ended."""
+    """The share of worlds in which a plan fails by the judge, or why there is none."""
     command = [ROOT / "build/downwash", "validate", problem, "--plan", plan, "--runs", str(runs), "--seed", str(WORLDS_SEED)]
     done = subprocess.run([*command, "--threads", "1", "--quiet", "--json"], capture_output=True, text=True, check=False)
     try:
         found = json.loads(done.stdout)
     except json.JSONDecodeError:
         return None, done.stderr.strip().splitlines()[-1]
-    worlds = found.get("worlds") or found
-    return worlds["failures"] / worlds["runs"], None
+    return found["failures"] / found["runs"], None
+
+
+def flown(problem, plan, runs, work):
+    """Both shares of a plan, and how long it takes."""
+    share, why = failures(problem, plan, runs)
+    free_share, _ = failures(without_flyable_area(problem, work), plan, runs)
+    file = plan / "solution.json" if plan.is_dir() else plan
+    duration_s = json.loads(file.read_text(encoding="utf-8"))["plan"]["reference"][-1]["t_s"]
+    return {"share": share, "free_share": free_share, "why": why, "duration_s": duration_s}
 
 
 def tracked(problem, seed, runs, work):
@@ -39,9 +57,7 @@ def tracked(problem, seed, runs, work):
         return {"share": None, "why": "no path"}
     plan = work / "path.json"
     plan.write_text(done.stdout, encoding="utf-8")
-    share, why = failures(problem, plan, runs)
-    duration_s = json.loads(done.stdout)["plan"]["reference"][-1]["t_s"]
-    return {"share": share, "why": why, "duration_s": duration_s}
+    return flown(problem, plan, runs, work)
 
 
 def certified(problem, seed, runs, limit_s, work):
@@ -49,20 +65,24 @@ def certified(problem, seed, runs, limit_s, work):
     found = solve(problem, run, seed, limit_s)
     if found["status"] != "solved":
         return {"share": None, "why": "no certified plan"}
-    share, why = failures(problem, run, runs)
-    solution = json.loads((run / "solution.json").read_text(encoding="utf-8"))
-    return {"share": share, "why": why, "duration_s": solution["plan"]["reference"][-1]["t_s"]}
+    return flown(problem, run, runs, work)
+
+
+def made(folder):
+    folder.mkdir()
+    return folder
 
 
 def cells_of(lines):
-    flown = [line["share"] for line in lines if line["share"] is not None]
-    mean = sum(flown) / len(flown) if flown else None
+    good = [line for line in lines if line["share"] is not None]
+    shares = [line["share"] for line in good]
+    free = [line["free_share"] for line in good if line["free_share"] is not None]
     return [
-        f"{len(flown)}/{len(lines)}",
-        number(mean, "{:.3f}"),
-        number(max(flown, default=None), "{:.3f}"),
-        f"{sum(share <= 0.01 for share in flown)}/{len(flown)}",
-        number(median([line["duration_s"] for line in lines if line["share"] is not None] or [None]), "{:.1f}"),
+        f"{len(good)}/{len(lines)}",
+        number(sum(shares) / len(shares) if shares else None, "{:.3f}"),
+        number(max(shares, default=None), "{:.3f}"),
+        number(sum(free) / len(free) if free else None, "{:.3f}"),
+        number(median([line["duration_s"] for line in good]), "{:.1f}"),
     ]
 
 
@@ -83,7 +103,7 @@ def main():
     ):
         text = text.replace(f"@{name}@", str(value))
     print(text.strip() + "\n")
-    print("| problem | planner | plans flown | mean share of worlds that fail | worst plan | at most 1 % fail | duration s |")
+    print("| problem | planner | plans flown | mean share of worlds that fail | worst plan | mean without flyable area | duration s |")
     print("| --- | --- | --: | --: | --: | --: | --: |")
     notes = []
     for problem in given.problems:
@@ -92,7 +112,7 @@ def main():
             seeds = range(1, given.seeds + 1)
             rows = {
                 "RRT-Connect, tracked": [tracked(problem, seed, given.runs, work) for seed in seeds],
-                "ours, certified": [certified(problem, seed, given.runs, given.time_limit, work / str(seed)) for seed in seeds],
+                "ours, certified": [certified(problem, seed, given.runs, given.time_limit, made(work / str(seed))) for seed in seeds],
             }
         for name, lines in rows.items():
             print(f"| {problem.stem} | {name} | " + " | ".join(cells_of(lines)) + " |", flush=True)
