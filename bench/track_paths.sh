@@ -15,6 +15,7 @@ for seed in 1 2 3 4 5; do
         problems+=("$problem")
     done
 done
-bench/track_paths.py "${problems[@]}" --seeds "${SEEDS:-3}" --runs "${RUNS:-64}" --time-limit "${LIMIT:-20}" >bench/results/track_paths.md.new
+bench/track_paths.py fly "$work/plans.jsonl" "${problems[@]}" --seeds "${SEEDS:-3}" --runs "${RUNS:-64}" --time-limit "${LIMIT:-20}"
+bench/track_paths.py page "$work/plans.jsonl" >bench/results/track_paths.md.new
 mv bench/results/track_paths.md.new bench/results/track_paths.md
 cat bench/results/track_paths.md
