@@ -240,10 +240,19 @@ def ompl_table(lines):
         print(f"| {problem} | {planner.upper()} | " + " | ".join(cells) + " |")
 
 
+def seeds_of(lines):
+    """How many seeds there are at least of each kind of search."""
+    texts = []
+    for limit, name in ((None, "first solutions"), (1.0, "1 s"), (10.0, "10 s")):
+        counts = [len(of(lines, problem, limit)) for problem in {line["problem"] for line in lines}]
+        texts.append(f"{min(counts)} for {name}")
+    return "seeds of each problem: " + ", ".join(texts)
+
+
 def page(given):
     lines, ompl = read_lines(given.ours), read_lines(given.ompl)
     text = (HERE / "page_in_space.md").read_text(encoding="utf-8").replace("@COMMIT@", shell("bench/source_commit.sh"))
-    parts = text.replace("@CPU@", processor()).replace("@SEEDS@", str(max(line["seed"] for line in lines))).split("<!-- results -->")
+    parts = text.replace("@CPU@", processor()).replace("@SEEDS@", seeds_of(lines)).split("<!-- results -->")
     found = figures(lines)
     print(parts[0].rstrip() + "\n\n## Result\n")
     bounds_table(lines, found)
