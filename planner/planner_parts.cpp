@@ -199,7 +199,7 @@ BrakingPartsOf<Space>::MapAround map_around(const SpaceProblem& problem, const S
                                             const std::shared_ptr<const SurfaceVolumes>& volumes,
                                             const std::vector<BoundingBox>& unmapped) {
     return [&]() -> std::shared_ptr<const SurfaceVolumes> {
-        if (!problem.aero.enabled) {
+        if (!has_surface_effects(problem)) {
             return nullptr;
         }
         return volumes && unmapped.empty() ? volumes : make_volumes(model);

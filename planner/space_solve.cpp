@@ -24,11 +24,19 @@ bool certifies(const SpaceProblem& problem) {
 
 /// Whether flights of a search, of its certificates or of stops are among surfaces.
 bool needs_volumes(const SpaceProblem& problem, const SpaceSolveOptions& options) {
-    return problem.aero.enabled &&
-           (problem.planner.variant == Variant::mp_arm_ada || certifies(problem) || options.finds_stops);
+    if (problem.planner.variant == Variant::mp_arm_ada) {
+        return problem.aero.enabled;
+    }
+    return has_surface_effects(problem) && (certifies(problem) || options.finds_stops);
 }
 
 }  // namespace
+
+bool has_surface_effects(const SpaceProblem& problem) {
+    const AeroSettings& aero = problem.aero;
+    return aero.enabled && (aero.ground.model != EffectModel::none || aero.ceiling.model != EffectModel::none ||
+                            aero.wall.is_any() || aero.map);
+}
 
 std::shared_ptr<const SurfaceVolumes> make_volumes(const SpaceProblemModel& model, const std::filesystem::path& cache) {
     const SpaceProblem& problem = model.problem();

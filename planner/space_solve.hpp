@@ -31,6 +31,9 @@ struct SpaceSearchResult : FoundOf<planning::Space> {
 /// key paths of a problem file. Empty if it can be planned.
 [[nodiscard]] DOWNWASH_EXPORT std::vector<KeyError> space_planning_errors(const SpaceProblem& problem);
 
+/// Whether any surface changes what the rotors of a problem do. If none does, no flight needs volumes.
+[[nodiscard]] bool has_surface_effects(const SpaceProblem& problem);
+
 /// The volumes of surface effects wherever the vehicle of a problem can be. They fill themselves as flights ask.
 /// @param cache folder of a MapCache; empty: none
 [[nodiscard]] DOWNWASH_EXPORT std::shared_ptr<const SurfaceVolumes> make_volumes(

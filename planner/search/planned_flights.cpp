@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "downwash/controllers/space_duration.hpp"
+#include "downwash/scene/space_pose.hpp"
 #include "downwash/search/closed_loop_flights.hpp"
 #include "downwash/search/line_flights.hpp"
 #include "downwash/search/obstacle_labels.hpp"
@@ -43,7 +44,10 @@ std::optional<SpacePlanningRules> space_planning_rules(const SpaceProblem& probl
     rules.low_m = problem.bounds.low_m;
     rules.high_m = problem.bounds.high_m;
     rules.keeps_joint_limits = false;  // references do; an arm that hovers at a limit swings about it
-    rules.max_tracking_error_m = FlightRules{}.max_tracking_error_m;
+    // A vehicle that starts beyond this tilt first falls. It is near no reference until it has recovered.
+    const bool starts_lost =
+        problem.start.attitude && rotation_of(*problem.start.attitude)[2][2] < std::cos(unstable_pitch_rad);
+    rules.max_tracking_error_m = starts_lost ? unstable_error_m : FlightRules{}.max_tracking_error_m;
     rules.max_saturation = problem.planner.max_saturation;
     rules.max_tilt_rate_rad_s = problem.planner.max_pitch_rate_rad_s.value_or(rules.max_tilt_rate_rad_s);
     return rules;

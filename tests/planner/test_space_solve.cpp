@@ -67,6 +67,30 @@ TEST_CASE("a search in space gives the same plan on one thread and on two, and g
     CHECK(one.cost < solved(problem, 1, true).cost);
 }
 
+TEST_CASE("a vehicle that starts upside down falls, recovers and hovers at its goal") {
+    SpaceProblem problem = girder();
+    problem.robot = read_space_robot(DOWNWASH_PROBLEMS "/../bench/dynobench/quadrotor_v0.yaml");
+    problem.obstacles.clear();
+    problem.bounds = {{-2, -2, -2}, {2, 2, 2}};
+    problem.aero.ground.model = problem.aero.ceiling.model = EffectModel::none;
+    problem.planner.variant = Variant::mp_arm_da;
+    problem.planner.max_saturation = 1000;
+    problem.start = {};
+    problem.start.position_m = {0, 0, 1};
+    problem.start.attitude = {0.0436194, -0.9990482, 0, 0};  // by 175 degrees about x
+    SpaceConfigurationGoal place;
+    place.x_m = 0;
+    place.y_m = 0.8;
+    place.z_m = 1;
+    problem.goals.assign(1, SpaceGoal{});
+    problem.goals.front().kind = place;
+    problem.goals.front().hold_s = 4;
+    const SpaceSearchResult found = solved(problem, 1, true);
+    REQUIRE(found.status == Status::solved);
+    CHECK_FALSE(found.map);  // no surface changes thrust
+    CHECK(found.execution->max_tracking_error_m > 0.5);
+}
+
 TEST_CASE("several goals in space are visited in their order") {
     SpaceProblem problem = girder();
     SpaceGoal before;
