@@ -4,12 +4,5 @@ set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 
 ./dev build --target bench_replan >&2
-mkdir -p bench/results
-{
-    printf '# Changes in the middle of a flight\n\n'
-    printf 'Commit %s, %s, 2 threads. Made by %sbench/replan.sh%s.\n\n' "$(bench/source_commit.sh)" \
-        "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)" '`' '`'
+bench/page.sh replan 'Changes in the middle of a flight' '2 threads' \
     build/bench/bench_replan problems/bridge_inspection.yaml "$@"
-} >bench/results/replan.md.new
-mv bench/results/replan.md.new bench/results/replan.md
-cat bench/results/replan.md

@@ -74,6 +74,7 @@ SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model, c
     SpaceSolveOptions options = asked;
     options.threads = std::max(1, options.threads);
     SpaceSearchResult result;
+    result.seed = problem.planner.seed;
     const planning::Stopwatch map_clock;
     std::shared_ptr<const SurfaceVolumes> volumes;
     if (needs_volumes(problem, options)) {

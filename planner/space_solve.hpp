@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -22,6 +23,7 @@ using SpaceSolveOptions = SolveOptionsOf<planning::Space>;
 /// What a search in space has found, and how it went.
 struct SpaceSearchResult : FoundOf<planning::Space> {
     bool interrupted = false;  ///< ended by the stop token
+    std::uint32_t seed = 1;    ///< of the search
     SearchRecord planning;
     /// Volumes of the problem, for SpaceSolveOptions::map of another one with the same scene; empty: none.
     std::shared_ptr<const SurfaceVolumes> map;

@@ -6,6 +6,7 @@
 
 #include "downwash/base/parameter_factories.hpp"
 #include "downwash/problems/goal_kinds.hpp"
+#include "downwash/problems/mission_rows.hpp"
 
 namespace downwash {
 namespace {
@@ -91,7 +92,6 @@ void add_choice(Rows& rows, const std::string& path, GoalMember goal) {
 }
 
 void add_any_order(Rows& rows) {
-    constexpr std::string_view with_targets = "with in_any_order";
     const auto target = [](auto& p, std::size_t i) -> auto& {
         return p.targets[i];
     };
@@ -109,27 +109,7 @@ void add_any_order(Rows& rows) {
     const auto return_to = [](auto& p, std::size_t) -> auto& {
         return *p.return_to;
     };
-    rows.push_back(parameters::group<Problem>(
-                       "goal.return_to", "where the flight must end and stay after the last target",
-                       [](const Problem& p, std::size_t) {
-                           return p.return_to && std::holds_alternative<ConfigurationGoal>(p.return_to->kind);
-                       },
-                       [](Problem& p, std::size_t, bool is_there) {
-                           p.return_to.reset();
-                           if (is_there) {
-                               p.return_to.emplace();
-                           }
-                       })
-                       .only(with_targets, has_targets));
-    add(rows, configuration_rows(), "goal.return_to", return_to);
-    rows.push_back(hold("goal.return_to", return_to));
-    rows.push_back(parameters::number<Problem>(
-                       "goal.energy_budget_j",
-                       "energy that no flight may exceed: targets for which it is not enough are left out",
-                       [](auto& p, std::size_t) -> auto& { return p.energy_budget_j; })
-                       .above(0)
-                       .at_most(1e12)
-                       .only(with_targets, has_targets));
+    add_mission_rows<ConfigurationGoal>(rows, configuration_rows(), hold("goal.return_to", return_to), has_targets);
 }
 
 }  // namespace

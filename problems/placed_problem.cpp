@@ -171,6 +171,17 @@ Json json_of(const problems::YamlNode& node) {
     return json;
 }
 
+/// @throws ProblemFileError with every value that is wrong by itself
+template <class Model>
+Model values_in(const ParameterTable<Model>& table, const std::string& text, const std::filesystem::path& file) {
+    problems::TreeReader<Model> reader(table);
+    reader.read_text(text, file);
+    if (auto errors = reader.errors(); !errors.empty()) {
+        throw ProblemFileError(std::move(errors));
+    }
+    return reader.model();
+}
+
 }  // namespace
 
 PlacedProblem read_placed_problem(const std::filesystem::path& file) {
@@ -189,12 +200,11 @@ PlacedProblem parse_problem(const std::string& text, const std::filesystem::path
 }
 
 Problem parse_values(const std::string& text, const std::filesystem::path& file) {
-    ProblemTreeReader reader(problem_parameters());
-    reader.read_text(text, file);
-    if (auto errors = reader.errors(); !errors.empty()) {
-        throw ProblemFileError(std::move(errors));
-    }
-    return reader.model();
+    return values_in(problem_parameters(), text, file);
+}
+
+SpaceProblem parse_space_values(const std::string& text, const std::filesystem::path& file) {
+    return values_in(space_problem_parameters(), text, file);
 }
 
 PlacedProblem changed_problem(const PlacedProblem& before, std::span<const KeyChange> changes) {

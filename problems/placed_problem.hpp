@@ -54,6 +54,9 @@ struct PlacedSpaceProblem {
 /// of it, such as obstacles and a goal, over into another problem.
 /// @param file as for parse_problem()   @throws ProblemFileError with every value that is wrong by itself
 [[nodiscard]] DOWNWASH_EXPORT Problem parse_values(const std::string& text, const std::filesystem::path& file);
+/// The same of a problem in space.
+[[nodiscard]] DOWNWASH_EXPORT SpaceProblem parse_space_values(const std::string& text,
+                                                              const std::filesystem::path& file);
 
 /// A new value of a key.
 struct KeyChange {

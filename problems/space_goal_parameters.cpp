@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "downwash/base/parameter_factories.hpp"
+#include "downwash/problems/mission_rows.hpp"
 #include "downwash/problems/obstacle_parameters.hpp"
 #include "downwash/problems/space_rows.hpp"
 
@@ -211,38 +212,6 @@ void add_goal(ProblemRows& rows, const std::string& path, GoalMember goal) {
     rows.push_back(hold(path + ".any_of[]", alternative));
 }
 
-/// What a mission to targets in any order has beside them.
-void add_mission(ProblemRows& rows) {
-    constexpr std::string_view with_targets = "with in_any_order";
-    const auto has_targets = [](const SpaceProblem& p, std::size_t) { return p.in_any_order; };
-    const auto return_to = [](auto& p, std::size_t) -> auto& {
-        return *p.return_to;
-    };
-    rows.push_back(parameters::group<SpaceProblem>(
-                       key_of_return, "where the flight must end and stay after the last target",
-                       [](const SpaceProblem& p, std::size_t) {
-                           return p.return_to && std::holds_alternative<SpaceConfigurationGoal>(p.return_to->kind);
-                       },
-                       [](SpaceProblem& p, std::size_t, bool is_there) {
-                           p.return_to.reset();
-                           if (is_there) {
-                               p.return_to.emplace();
-                           }
-                       })
-                       .only(with_targets, has_targets));
-    for (const Row& row : configuration_rows()) {
-        rows.push_back(parameters::nested<SpaceProblem>(row, "goal.return_to.", return_to));
-    }
-    rows.push_back(hold(std::string(key_of_return), return_to));
-    rows.push_back(parameters::number<SpaceProblem>(
-                       "goal.energy_budget_j",
-                       "energy that no flight may exceed: targets for which it is not enough are left out",
-                       [](auto& p, std::size_t) -> auto& { return p.energy_budget_j; })
-                       .above(0)
-                       .at_most(1e12)
-                       .only(with_targets, has_targets));
-}
-
 }  // namespace
 
 void add_space_goal_rows(ProblemRows& rows) {
@@ -284,7 +253,11 @@ void add_space_goal_rows(ProblemRows& rows) {
     const auto has_no_choice = [goal](const SpaceProblem& p, std::size_t i) { return goal(p, i).any_of.empty(); };
     add_goal(rows, "goal.in_any_order[]", goal);
     rows.push_back(hold("goal.in_any_order[]", goal).only("without any_of", has_no_choice));
-    add_mission(rows);
+    const auto return_to = [](auto& p, std::size_t) -> auto& {
+        return *p.return_to;
+    };
+    add_mission_rows<SpaceConfigurationGoal>(rows, configuration_rows(), hold(std::string(key_of_return), return_to),
+                                             [](const SpaceProblem& p, std::size_t) { return p.in_any_order; });
     rows.push_back(hold("goal", goal)
                        .only("without any_of and in_any_order", [has_no_choice](const SpaceProblem& p, std::size_t i) {
                            return !p.in_any_order && has_no_choice(p, i);

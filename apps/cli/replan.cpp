@@ -33,12 +33,7 @@ Replanned fly_rest(const ReplanArguments& given, const Takeover& from, const Pla
     const Problem& problem = now.problem;
     const Execution rest = execute(*now.model, start_state(*now.model, problem.start), from.rest.reference, from.left,
                                    problem.aero.enabled);
-    return {given.plan,
-            from.tick,
-            static_cast<double>(from.tick) * from.rest.tick_s,
-            rest.outcome,
-            cost_of(rest, problem.planner.objective),
-            {}};
+    return replanned_from(given, from, rest.outcome, cost_of(rest, problem.planner.objective));
 }
 
 ExitCode run(const ReplanArguments& given) {
@@ -47,18 +42,11 @@ ExitCode run(const ReplanArguments& given) {
     }
     Interruption interruption(given.limits);
     require_whole_plan(given.plan);
-    const Problem flown = read_problem(problem_of_plan(given));
-    const Solution earlier = read_solution(plan_file(given.plan), flown);
-    const Takeover from = take_over(flown, *earlier.plan, earlier.order,
-                                    tick_at(given, earlier.plan->duration_s(), earlier.plan->tick_s));
+    const Takeover from = takeover_of(given, read_problem(problem_of_plan(given)));
     std::vector<LocatedError> warnings;
-    const PlannableProblem plannable = read_plannable_problem(
-        given.problem,
-        [&](Problem& settings) {
-            given.planner.apply_to(settings);
-            settings = remaining(from, std::move(settings));
-        },
-        given.is_quiet ? nullptr : print_outdated, noting(warnings, given.is_quiet));
+    const PlannableProblem plannable =
+        read_plannable_problem(given.problem, leaving_rest(given, from), given.is_quiet ? nullptr : print_outdated,
+                               noting(warnings, given.is_quiet));
     const Problem& read = plannable.problem;
     const std::filesystem::path out =
         folder_beside_plan(given.out, default_folder(read), "-replanned", plan_file(given.plan));

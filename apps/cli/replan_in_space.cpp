@@ -24,12 +24,7 @@ Replanned fly_rest(const ReplanArguments& given, const TakeoverOf<planning::Spac
     SpaceExecutionSettings settings;
     settings.goals = &left;
     const SpaceFlight rest = now.execute(from.rest, settings);
-    return {given.plan,
-            from.tick,
-            static_cast<double>(from.tick) * from.rest.tick_s,
-            rest.outcome,
-            cost_of(rest, now.problem().planner.objective),
-            {}};
+    return replanned_from(given, from, rest.outcome, cost_of(rest, now.problem().planner.objective));
 }
 
 }  // namespace
@@ -37,19 +32,10 @@ Replanned fly_rest(const ReplanArguments& given, const TakeoverOf<planning::Spac
 ExitCode replan_in_space(const ReplanArguments& given) {
     Interruption interruption(given.limits);
     require_whole_plan(given.plan);
-    const SpaceProblem flown = read_space_problem(problem_of_plan(given));
-    const SpaceSolution earlier = read_solution(plan_file(given.plan), flown);
-    const SpacePlan& plan = *earlier.plan;
-    const TakeoverOf<planning::Space> from =
-        take_over(flown, plan, earlier.order, tick_at(given, plan.duration_s(), plan.tick_s));
+    const TakeoverOf<planning::Space> from = takeover_of(given, read_space_problem(problem_of_plan(given)));
     std::vector<LocatedError> warnings;
-    const SpaceProblem problem = read_space_problem(
-        given.problem,
-        [&](SpaceProblem& settings) {
-            given.planner.apply_to(settings);
-            settings = remaining(from, std::move(settings));
-        },
-        noting(warnings, given.is_quiet), space_planning_errors);
+    const SpaceProblem problem = read_space_problem(given.problem, leaving_rest(given, from),
+                                                    noting(warnings, given.is_quiet), space_planning_errors);
     const auto usual = default_folder(problem.name, problem.planner);
     RunFolder folder = claimed_folder(folder_beside_plan(given.out, usual, "-replanned", plan_file(given.plan)),
                                       problem, given.problem, given.force);

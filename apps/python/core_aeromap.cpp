@@ -10,18 +10,12 @@
 
 #include "downwash/base/files.hpp"
 #include "downwash/base/key_error.hpp"
-#include "downwash/base/parallel.hpp"
-#include "downwash/python/columns.hpp"
 #include "downwash/python/core_solution.hpp"
-#include "downwash/python/interruptible.hpp"
 #include "downwash/simulation/flight_model.hpp"
 
 namespace downwash::python {
-namespace {
 
-/// The index of a rotor that users count from 1. @throws InputError if there is none
-int rotor_index(const FlightModel& model, int rotor) {
-    const int rotors = model.tick().plant.rotor_count;
+int rotor_index(int rotors, int rotor) {
     if (rotor < 1 || rotor > rotors) {
         throw_input_error("is " + std::to_string(rotor) + ": expected a number from 1 to " + std::to_string(rotors),
                           "rotor");
@@ -29,26 +23,16 @@ int rotor_index(const FlightModel& model, int rotor) {
     return rotor - 1;
 }
 
-/// Fills an array with what of(point) gives for every row, without the interpreter lock.
-template <class Result, class Of>
-py::array_t<Result> at_points(const Points& points, std::size_t count, int threads, const Of& of) {
-    constexpr std::size_t batch = 2048;  // some milliseconds
-    py::array_t<Result> results(static_cast<py::ssize_t>(count));
-    const double* from = points.data();
-    Result* to = results.mutable_data();
-    const auto width = static_cast<std::size_t>(points.shape(1));
-    interruptible(py::none(), [&](Attendance& attendance) {
-        run_parallel((count + batch - 1) / batch, thread_count(threads),
-                     [&, token = attendance.token()](std::size_t i) {
-                         const std::size_t begin = i * batch,
-                                           end = token.stop_requested() ? begin : std::min(count, begin + batch);
-                         for (std::size_t k = begin; k < end; ++k) {
-                             to[k] = of(from + k * width);
-                         }
-                     });
-        return true;
-    });
-    return results;
+void require_finite(const Points& points) {
+    if (!std::all_of(points.data(), points.data() + points.size(), [](double x) { return std::isfinite(x); })) {
+        throw_input_error("hold a number that is not finite: expected finite ones", "points");
+    }
+}
+
+namespace {
+
+int rotor_index(const FlightModel& model, int rotor) {
+    return python::rotor_index(model.tick().plant.rotor_count, rotor);
 }
 
 /// The hub of a rotor in the world, from a point of the plane or of the world.
@@ -60,24 +44,24 @@ Vector3 hub_of(const FlightModel& model, int rotor, const double* at, bool is_in
 py::array_t<double> factor(const CoreProblem& of, const Points& points, int rotor, int threads) {
     const FlightModel& model = *of.model();
     const int index = rotor_index(model, rotor);
-    const std::size_t count = count_points(points, true);
-    if (!std::all_of(points.data(), points.data() + points.size(), [](double x) { return std::isfinite(x); })) {
-        throw_input_error("hold a number that is not finite: expected finite ones", "points");
-    }
+    const std::size_t count = count_points(points, Coordinates::plane_or_world);
+    require_finite(points);
     const bool is_in_world = points.shape(1) == 3;
     const DirectEffect& effect = model.effect(index);
-    return at_points<double>(points, count, threads,
-                             [&](const double* at) { return effect.factor(hub_of(model, index, at, is_in_world)); });
+    return at_points<double>(points, count, threads, [&] {
+        return [&](const double* at) { return effect.factor(hub_of(model, index, at, is_in_world)); };
+    });
 }
 
 py::array_t<bool> is_flyable(const CoreProblem& of, const Points& points, int rotor, int threads) {
     const FlightModel& model = *of.model();
     const int index = rotor_index(model, rotor);
-    const std::size_t count = count_points(points, true);
+    const std::size_t count = count_points(points, Coordinates::plane_or_world);
     const bool is_in_world = points.shape(1) == 3;
     const DirectEffect& effect = model.effect(index);
-    return at_points<bool>(points, count, threads,
-                           [&](const double* at) { return effect.is_flyable(hub_of(model, index, at, is_in_world)); });
+    return at_points<bool>(points, count, threads, [&] {
+        return [&](const double* at) { return effect.is_flyable(hub_of(model, index, at, is_in_world)); };
+    });
 }
 
 }  // namespace
@@ -132,16 +116,16 @@ void write(const CoreMap& of, const std::string& file) {
 
 py::array_t<double> map_factor(const CoreMap& of, const Points& points, int rotor, int threads) {
     const std::size_t layer = of.model->rotor_layer(rotor_index(*of.model, rotor));
-    const std::size_t count = count_points(points, false);
+    const std::size_t count = count_points(points, Coordinates::plane);
     return at_points<double>(points, count, threads,
-                             [&](const double* at) { return of.map->factor(layer, at[0], at[1]); });
+                             [&] { return [&](const double* at) { return of.map->factor(layer, at[0], at[1]); }; });
 }
 
 py::array_t<bool> map_flyable(const CoreMap& of, const Points& points, int rotor, int threads) {
     const std::size_t layer = of.model->rotor_layer(rotor_index(*of.model, rotor));
-    const std::size_t count = count_points(points, false);
+    const std::size_t count = count_points(points, Coordinates::plane);
     return at_points<bool>(points, count, threads,
-                           [&](const double* at) { return of.map->is_flyable(layer, at[0], at[1]); });
+                           [&] { return [&](const double* at) { return of.map->is_flyable(layer, at[0], at[1]); }; });
 }
 
 /// The arrays of a layer, which are made once, keep the map alive and cannot be written.
@@ -193,6 +177,7 @@ void bind_aeromap(py::module_& module) {
         .def("extent", extent_of)
         .def("cells_per_m", [](const CoreMap& of) { return of.map->view(0).cells_per_m; })
         .def("memory_bytes", [](const CoreMap& of) { return of.map->memory_bytes(); });
+    bind_volumes(module);
 }
 
 }  // namespace downwash::python

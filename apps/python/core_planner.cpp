@@ -1,9 +1,6 @@
 #include <pybind11/stl.h>
 
-#include <algorithm>
-#include <array>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -11,7 +8,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -19,78 +15,11 @@
 #include "downwash/planner/planner.hpp"
 #include "downwash/python/columns.hpp"
 #include "downwash/python/core_solution.hpp"
+#include "downwash/python/core_starts.hpp"
 #include "downwash/python/interruptible.hpp"
 
 namespace downwash::python {
 namespace {
-
-/// The coordinates of a reference point, then their first and second derivatives.
-using ReferenceNumbers = std::array<double, 3 * max_axes>;
-
-ReferencePoint reference_point(const double* numbers) {
-    ReferencePoint point;
-    std::copy_n(numbers, max_axes, point.position);
-    std::copy_n(numbers + max_axes, max_axes, point.velocity);
-    std::copy_n(numbers + 2 * max_axes, max_axes, point.acceleration);
-    return point;
-}
-
-/// A start: pose and speeds, the reference with its derivatives, rotor thrusts, the controller's memory.
-using CoreStart =
-    std::tuple<std::array<double, 8>, std::optional<ReferenceNumbers>, std::vector<double>, std::vector<double>>;
-
-Start start_of(const CoreStart& given) {
-    const auto& [s, reference, rotor_thrust_n, memory] = given;
-    Start start{{s[0], s[1], s[2]}, s[3], {s[4], s[5], s[7]}, s[6], {}, rotor_thrust_n, memory};
-    if (reference) {
-        start.reference = reference_point(reference->data());
-    }
-    return start;
-}
-
-ReferenceNumbers numbers_of(const ReferencePoint& point) {
-    ReferenceNumbers numbers;
-    std::copy_n(point.position, max_axes, numbers.begin());
-    std::copy_n(point.velocity, max_axes, numbers.begin() + max_axes);
-    std::copy_n(point.acceleration, max_axes, numbers.begin() + 2 * max_axes);
-    return numbers;
-}
-
-CoreStart numbers_of(const Start& s) {
-    return {{s.at[plane::x], s.at[plane::z], s.at[plane::arm], s.pitch_rad, s.velocity[plane::x], s.velocity[plane::z],
-             s.pitch_rate_rad_s, s.velocity[plane::arm]},
-            s.reference ? std::optional(numbers_of(*s.reference)) : std::nullopt,
-            s.rotor_thrust_n,
-            s.controller_memory};
-}
-
-/// A plan from the rows of its knots, with the columns of knot_table().
-Plan plan_of(const Points& knots, double tick_s) {
-    constexpr auto columns = static_cast<py::ssize_t>(1 + 3 * max_axes);
-    if (knots.ndim() != 2 || knots.shape(0) < 1 || knots.shape(1) != columns) {
-        throw_input_error("has no knots: expected columns as solution.plan has them", "plan");
-    }
-    Plan plan;
-    plan.tick_s = tick_s;
-    const auto at = knots.unchecked<2>();
-    for (py::ssize_t i = 0; i < knots.shape(0); ++i) {
-        for (py::ssize_t k = 0; k < columns; ++k) {
-            if (!std::isfinite(at(i, k))) {
-                throw_input_error("has a number that is not finite in its row " + std::to_string(i), "plan");
-            }
-        }
-        const double ticks = at(i, 0) / tick_s;
-        const double before = i == 0 ? -1 : static_cast<double>(plan.reference.back().tick);
-        const bool is_in_order = i == 0 ? std::round(ticks) == 0 : std::round(ticks) > before;
-        if (std::abs(ticks - std::round(ticks)) > 1e-3 || !is_in_order || ticks > max_plan_ticks) {
-            throw_input_error("has t_s = " + std::to_string(at(i, 0)) + " in its row " + std::to_string(i) +
-                                  ": expected times on control ticks that rise from 0, at most an hour",
-                              "plan");
-        }
-        plan.reference.push_back({std::llround(ticks), reference_point(knots.data(i, 1))});
-    }
-    return plan;
-}
 
 std::int64_t tick_within(std::int64_t tick) {
     if (tick < 0 || tick > max_plan_ticks) {
@@ -99,15 +28,45 @@ std::int64_t tick_within(std::int64_t tick) {
     return tick;
 }
 
-/// What Python gets of an answer.
-struct CoreAnswer {
-    Answer answer;
-    std::shared_ptr<const CoreProblem> of;  ///< where there is a solution
+/// What a search of a planner has found, as Python gets it.
+CoreSolution solved(const std::shared_ptr<const CoreProblem>& of, const Solution& found, int /*threads*/) {
+    return {of, found};
+}
+CoreSpaceSolution solved(const std::shared_ptr<const CoreSpaceProblem>& of, const SpaceSearchResult& found,
+                         int threads) {
+    return {of, solution_of(of->problem(), std::make_shared<const SpaceSearchResult>(found), threads)};
+}
 
-    [[nodiscard]] std::optional<CoreSolution> solution() const {
-        return answer.solution ? std::optional(CoreSolution{of, *answer.solution}) : std::nullopt;
+/// What Python gets of an answer.
+template <class Family>
+struct CoreAnswer {
+    AnswerOf<Family> answer;
+    std::shared_ptr<const typename CoreOf<Family>::Problem> of;  ///< where there is a solution
+    int threads = 1;
+
+    [[nodiscard]] std::optional<typename CoreOf<Family>::Solution> solution() const {
+        return answer.solution ? std::optional(solved(of, *answer.solution, threads)) : std::nullopt;
     }
 };
+
+/// The problem of a planner as it is now.
+std::shared_ptr<CoreProblem> problem_of(const Planner& planner, const CoreProblem& began_with, std::uint32_t seed) {
+    auto of = std::make_shared<CoreProblem>(
+        CoreProblem{{{planner.problem(), planner.shared_model()}, {}, {}, began_with.placed.placed}, began_with.file});
+    of->placed.plannable.problem.planner.seed = seed;
+    return of;
+}
+std::shared_ptr<CoreSpaceProblem> problem_of(const SpacePlanner& planner, const CoreSpaceProblem& began_with,
+                                             std::uint32_t seed) {
+    SpaceProblem problem = planner.problem();
+    problem.planner.seed = seed;
+    return std::make_shared<CoreSpaceProblem>(
+        CoreSpaceProblem{{std::make_shared<const SpaceProblemModel>(std::move(problem), planner.model()),
+                          {},
+                          {},
+                          began_with.placed.placed},
+                         began_with.file});
+}
 
 /// The changes of a call.
 struct CoreChange {
@@ -116,45 +75,78 @@ struct CoreChange {
     std::vector<std::string> removed;
 };
 
-SceneChange change_of(const CoreChange& given) {
-    SceneChange change;
+constexpr const char* changes_to = "changes to one goal: expected ";
+
+/// The one goal in the values of a problem. @throws InputError
+Goal goal_of(const Problem& values) {
+    if (!values.goals_before.empty() || !values.targets.empty() || asks_for_contact(values.goal)) {
+        throw_input_error(std::string(changes_to) + "end_effector, configuration or any_of", "goal");
+    }
+    return values.goal;
+}
+SpaceGoal goal_of(const SpaceProblem& values) {
+    if (values.goals.size() != 1 || values.in_any_order) {
+        throw_input_error(std::string(changes_to) + "end_effector, camera, pose, configuration, contact or any_of",
+                          "goal");
+    }
+    return values.goals.front();
+}
+
+void read_values(const std::string& text, Problem& values) {
+    values = parse_values(text, "<dict>");
+}
+void read_values(const std::string& text, SpaceProblem& values) {
+    values = parse_space_values(text, "<dict>");
+}
+
+template <class Family>
+SceneChangeOf<Family> change_of(const CoreChange& given) {
+    SceneChangeOf<Family> change;
     change.removed = given.removed;
     if (given.text.empty()) {
         return change;
     }
-    const Problem values = parse_values(given.text, "<dict>");
+    typename Family::Problem values;
+    read_values(given.text, values);
     change.put = values.obstacles;
     if (given.has_goal) {
-        if (!values.goals_before.empty() || !values.targets.empty() || asks_for_contact(values.goal)) {
-            throw_input_error("changes to one goal: expected end_effector, configuration or any_of", "goal");
-        }
-        change.goal = values.goal;
+        change.goal = goal_of(values);
     }
     return change;
 }
 
-/// A Planner with the problem that it began with. One call at a time, apart from latest().
+/// A planner with the problem that it began with. One call at a time, apart from latest().
+template <class Family>
 class CorePlanner {
  public:
-    CorePlanner(const CoreProblem& problem, int threads, bool stop_at_first, bool finds_stops, const std::string& cache)
-        : began_with_(problem), planner_(problem.problem(), options(threads, stop_at_first, finds_stops, cache)) {}
+    using Problem = typename CoreOf<Family>::Problem;
+    using Solution = typename CoreOf<Family>::Solution;
+    using Start = typename Family::Start;
+    using SceneChange = SceneChangeOf<Family>;
+    using ReplanOptions = ReplanOptionsOf<Family>;
+    using SolveOptions = SolveOptionsOf<Family>;
+    using Answer = CoreAnswer<Family>;
 
-    CoreSolution solve(const py::object& on_progress, const py::object& stop) {
+    CorePlanner(const Problem& problem, int threads, bool stop_at_first, bool finds_stops, const std::string& cache)
+        : began_with_(problem),
+          threads_(thread_count(threads)),
+          planner_(problem.problem(), options(stop_at_first, finds_stops, cache)) {}
+
+    Solution solve(const py::object& on_progress, const py::object& stop) {
         const Call call(*this);
         return interruptible(stop, [&](Attendance& attendance) {
             tell_ = telling(attendance, on_progress);
-            const std::shared_ptr<const CoreProblem> of = problem_now();  // which loses its targets to their order
-            Solution solution = planner_.solve(attendance.token());
-            return CoreSolution{of, std::move(solution)};
+            const std::shared_ptr<const Problem> of = problem_now();  // which loses its targets to their order
+            return solved(of, planner_.solve(attendance.token()), threads_);
         });
     }
 
-    CoreAnswer replan(const CoreStart& from, std::int64_t tick, const CoreChange& given,
-                      const std::optional<double>& time_limit_s, const std::optional<std::uint64_t>& max_iterations,
-                      const py::object& on_answer, const py::object& stop) {
+    Answer replan(const CoreStart& from, std::int64_t tick, const CoreChange& given,
+                  const std::optional<double>& time_limit_s, const std::optional<std::uint64_t>& max_iterations,
+                  const py::object& on_answer, const py::object& stop) {
         const Call call(*this);
-        const Start start = start_of(from);
-        const SceneChange change = change_of(given);
+        const Start start = start_of(from, problem_at_first());
+        const SceneChange change = change_of<Family>(given);
         tick_within(tick);
         if (time_limit_s && !(*time_limit_s > 0)) {
             throw_input_error("is " + std::to_string(*time_limit_s) + ": expected more than 0 s", "time_limit_s");
@@ -162,7 +154,7 @@ class CorePlanner {
         if (max_iterations && *max_iterations == 0) {
             throw_input_error("is 0: expected at least 1", "max_iterations");
         }
-        std::optional<CoreAnswer> before;
+        std::optional<Answer> before;
         {
             const std::scoped_lock lock(mutex_);
             before = std::exchange(latest_, std::nullopt);
@@ -176,26 +168,25 @@ class CorePlanner {
         }
     }
 
-    [[nodiscard]] std::optional<CoreAnswer> latest() const {
+    [[nodiscard]] std::optional<Answer> latest() const {
         const std::scoped_lock lock(mutex_);
         return latest_;
     }
 
     CoreStart predicted(const CoreStart& from, const Points& knots, std::int64_t ticks) {
         const Call call(*this);
-        const Start start = start_of(from);
-        throw_if_any(start_errors(start, began_with_.problem().robot));
-        const Plan plan = plan_of(knots, tick_s());
-        return numbers_of(planner_.predicted(start, plan, tick_within(ticks)));
+        const Start start = start_of(from, problem_at_first());
+        throw_if_any(start_errors(start, problem_at_first().robot));
+        return numbers_of(planner_.predicted(start, plan_of(knots, problem_at_first()), tick_within(ticks)));
     }
 
-    [[nodiscard]] ReferenceNumbers reference_of(const Points& knots, std::int64_t tick) const {
-        return numbers_of(plan_of(knots, tick_s()).at(tick_within(tick)));
+    [[nodiscard]] std::vector<double> reference_of(const Points& knots, std::int64_t tick) const {
+        return numbers_of(plan_of(knots, problem_at_first()).at(tick_within(tick)), axes_of(problem_at_first()).size());
     }
 
     void adopt(const Points& knots) {
         const Call call(*this);
-        planner_.adopt(plan_of(knots, tick_s()));
+        planner_.adopt(plan_of(knots, problem_at_first()));
     }
 
     [[nodiscard]] std::optional<py::dict> plan() {
@@ -208,20 +199,21 @@ class CorePlanner {
         return numbers_of(planner_.problem().start);
     }
 
-    [[nodiscard]] std::shared_ptr<CoreProblem> problem() {
+    [[nodiscard]] std::shared_ptr<Problem> problem() {
         const Call call(*this);
         return problem_now();
     }
 
-    [[nodiscard]] double tick_s() const { return began_with_.model()->tick().tick_s; }
+    [[nodiscard]] double tick_s() const { return no_knots(problem_at_first()).tick_s; }
+    [[nodiscard]] std::vector<std::string> names() const { return knot_names(axes_of(problem_at_first())); }
 
  private:
-    CoreAnswer find_answer(const Start& start, std::int64_t tick, const SceneChange& change, ReplanOptions options,
-                           const py::object& on_answer, const py::object& stop) {
+    Answer find_answer(const Start& start, std::int64_t tick, const SceneChange& change, ReplanOptions options,
+                       const py::object& on_answer, const py::object& stop) {
         return interruptible(stop, [&](Attendance& attendance) {
             options.stop = attendance.token();
-            options.on_answer = [&](const Answer& answer) {
-                CoreAnswer told = with_problem(answer);
+            options.on_answer = [&](const AnswerOf<Family>& answer) {
+                Answer told = with_problem(answer);
                 {
                     const std::scoped_lock lock(mutex_);
                     latest_ = told;
@@ -254,9 +246,9 @@ class CorePlanner {
         CorePlanner& planner_;
     };
 
-    SolveOptions options(int threads, bool stop_at_first, bool finds_stops, const std::string& cache) {
+    SolveOptions options(bool stop_at_first, bool finds_stops, const std::string& cache) {
         SolveOptions options;
-        options.threads = thread_count(threads);
+        options.threads = threads_;
         options.stop_at_first_solution = stop_at_first;
         options.finds_stops = finds_stops;
         options.map_cache = cache;
@@ -268,56 +260,63 @@ class CorePlanner {
         return options;
     }
 
-    [[nodiscard]] std::shared_ptr<CoreProblem> problem_now() const {
-        return std::make_shared<CoreProblem>(CoreProblem{
-            {{planner_.problem(), planner_.shared_model()}, {}, {}, began_with_.placed.placed}, began_with_.file});
+    /// Robot and control ticks never change.
+    [[nodiscard]] const typename Family::Problem& problem_at_first() const { return began_with_.problem(); }
+
+    [[nodiscard]] std::shared_ptr<Problem> problem_now() const {
+        return problem_of(planner_, began_with_, planner_.problem().planner.seed);
     }
 
-    [[nodiscard]] CoreAnswer with_problem(const Answer& answer) const {
-        if (!answer.solution) {
-            return {answer, nullptr};
-        }
-        const std::shared_ptr<CoreProblem> of = problem_now();
-        of->placed.plannable.problem.planner.seed = static_cast<std::uint32_t>(answer.solution->seed);
-        return {answer, of};
+    [[nodiscard]] Answer with_problem(const AnswerOf<Family>& answer) const {
+        return {answer, answer.solution ? problem_of(planner_, began_with_, answer.solution->seed) : nullptr, threads_};
     }
 
-    CoreProblem began_with_;
+    Problem began_with_;
+    int threads_;
     std::function<void(const Progress&)> tell_;  ///< what the running call tells
-    Planner planner_;
+    PlannerOf<Family> planner_;
     std::atomic<bool> is_busy_ = false;
     mutable std::mutex mutex_;  ///< guards latest_
-    std::optional<CoreAnswer> latest_;
+    std::optional<Answer> latest_;
 };
+
+template <class Family>
+void bind_family(py::module_& module, const char* answer, const char* planner) {
+    using OneAnswer = CoreAnswer<Family>;
+    using OnePlanner = CorePlanner<Family>;
+    py::class_<OneAnswer>(module, answer)
+        .def_property_readonly("advice", [](const OneAnswer& of) { return name_of(of.answer.advice); })
+        .def_property_readonly("cost", [](const OneAnswer& of) { return of.answer.cost; })
+        .def_property_readonly("after_wall_s", [](const OneAnswer& of) { return of.answer.after_wall_s; })
+        .def("plan", [](const OneAnswer& of) { return columns_of(knot_table(of.answer.plan)); })
+        .def("solution", &OneAnswer::solution);
+    py::class_<OnePlanner>(module, planner)
+        .def(py::init<const typename OnePlanner::Problem&, int, bool, bool, const std::string&>())
+        .def("solve", &OnePlanner::solve)
+        .def(
+            "replan",
+            [](OnePlanner& of, const CoreStart& start, std::int64_t tick, const std::string& text, bool has_goal,
+               const std::vector<std::string>& removed, const std::optional<double>& time_limit_s,
+               const std::optional<std::uint64_t>& max_iterations, const py::object& on_answer,
+               const py::object& stop) {
+                return of.replan(start, tick, {text, has_goal, removed}, time_limit_s, max_iterations, on_answer, stop);
+            })
+        .def("latest", &OnePlanner::latest)
+        .def("predicted", &OnePlanner::predicted)
+        .def("reference_of", &OnePlanner::reference_of)
+        .def("adopt", &OnePlanner::adopt)
+        .def("plan", &OnePlanner::plan)
+        .def("start", &OnePlanner::start)
+        .def("problem", &OnePlanner::problem)
+        .def_property_readonly("knot_names", &OnePlanner::names)
+        .def_property_readonly("tick_s", &OnePlanner::tick_s);
+}
 
 }  // namespace
 
 void bind_planner(py::module_& module) {
-    py::class_<CoreAnswer>(module, "Answer")
-        .def_property_readonly("advice", [](const CoreAnswer& of) { return name_of(of.answer.advice); })
-        .def_property_readonly("cost", [](const CoreAnswer& of) { return of.answer.cost; })
-        .def_property_readonly("after_wall_s", [](const CoreAnswer& of) { return of.answer.after_wall_s; })
-        .def("plan", [](const CoreAnswer& of) { return columns_of(knot_table(of.answer.plan)); })
-        .def("solution", &CoreAnswer::solution);
-    py::class_<CorePlanner>(module, "Planner")
-        .def(py::init<const CoreProblem&, int, bool, bool, const std::string&>())
-        .def("solve", &CorePlanner::solve)
-        .def("replan",
-             [](CorePlanner& planner, const CoreStart& start, std::int64_t tick, const std::string& text, bool has_goal,
-                const std::vector<std::string>& removed, const std::optional<double>& time_limit_s,
-                const std::optional<std::uint64_t>& max_iterations, const py::object& on_answer,
-                const py::object& stop) {
-                 return planner.replan(start, tick, {text, has_goal, removed}, time_limit_s, max_iterations, on_answer,
-                                       stop);
-             })
-        .def("latest", &CorePlanner::latest)
-        .def("predicted", &CorePlanner::predicted)
-        .def("reference_of", &CorePlanner::reference_of)
-        .def("adopt", &CorePlanner::adopt)
-        .def("plan", &CorePlanner::plan)
-        .def("start", &CorePlanner::start)
-        .def("problem", &CorePlanner::problem)
-        .def_property_readonly("tick_s", &CorePlanner::tick_s);
+    bind_family<planning::Plane>(module, "Answer", "Planner");
+    bind_family<planning::Space>(module, "SpaceAnswer", "SpacePlanner");
 }
 
 }  // namespace downwash::python

@@ -8,6 +8,7 @@
 #include "downwash/python/core.hpp"
 #include "downwash/python/interruptible.hpp"
 #include "downwash/results/space_solution_file.hpp"
+#include "downwash/search/family.hpp"
 
 namespace downwash::python {
 
@@ -21,6 +22,18 @@ struct CoreSolution {
 struct CoreSpaceSolution {
     std::shared_ptr<const CoreSpaceProblem> of;
     SpaceSolution solution;
+};
+
+/// What Python has of a family of vehicles.
+template <class Family>
+struct CoreOf {
+    using Problem = CoreProblem;
+    using Solution = CoreSolution;
+};
+template <>
+struct CoreOf<planning::Space> {
+    using Problem = CoreSpaceProblem;
+    using Solution = CoreSpaceSolution;
 };
 
 /// A callback of a user with what a search tells; it may be None. Both outlive the search.

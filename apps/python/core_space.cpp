@@ -15,6 +15,7 @@
 #include "downwash/problems/space_problem_writer.hpp"
 #include "downwash/problems/visit_order.hpp"
 #include "downwash/python/columns.hpp"
+#include "downwash/python/core_aeromap.hpp"
 #include "downwash/python/core_solution.hpp"
 #include "downwash/results/run_folder.hpp"
 #include "downwash/results/space_trajectory_csv.hpp"
@@ -37,11 +38,8 @@ std::vector<LocatedError> remarks_on(const PlacedSpaceProblem& problem) {
 }
 
 CoreSpaceSolution solve_in_space(const std::shared_ptr<CoreSpaceProblem>& problem, int threads, bool stop_at_first,
-                                 const std::string& cache, const py::object& map, const py::object& on_progress,
-                                 const py::object& stop) {
-    if (!map.is_none()) {
-        throw_input_error("is for problems in a vertical plane: expected none for one in space", "map");
-    }
+                                 const std::string& cache, const std::shared_ptr<CoreVolumes>& map,
+                                 const py::object& on_progress, const py::object& stop) {
     if (const auto errors = space_planning_errors(problem->problem()); !errors.empty()) {
         throw ProblemFileError(problem->placed.placed(errors));
     }
@@ -53,6 +51,8 @@ CoreSpaceSolution solve_in_space(const std::shared_ptr<CoreSpaceProblem>& proble
         options.on_progress = telling(attendance, on_progress);
         options.stop_at_first_solution = stop_at_first;
         options.keep_tree = true;
+        options.finds_stops = true;
+        options.map = map != nullptr ? map->volumes : nullptr;
         options.map_cache = cache;
         return std::make_shared<const SpaceSearchResult>(solve(problem->model(), options));
     });
@@ -159,9 +159,10 @@ SpaceProblem as_visited(const SpaceProblem& problem, const SpaceSolution& soluti
                           "the solution");
     }
     const double* first = plan.reference.front().point.position;
-    const SpaceStart& start = problem.start;
-    if (!std::equal(start.position_m.begin(), start.position_m.end(), first, is_nearly) ||
-        !std::equal(start.joints_rad.begin(), start.joints_rad.end(), first + space::first_joint, is_nearly)) {
+    const SpacePoint begin = reference_at(problem.start);
+    if (!std::equal(first, first + space::yaw, begin.position, is_nearly) ||
+        !std::equal(first + space::first_joint, first + space::first_joint + plan.joints,
+                    begin.position + space::first_joint, is_nearly)) {
         throw_input_error("is a plan that begins elsewhere than the problem", "the solution");
     }
     const auto fits = [&problem](const Visit& visit) {

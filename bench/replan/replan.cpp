@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../support/measuring.hpp"
-#include "downwash/base/text.hpp"
+#include "answers.hpp"
 #include "downwash/planner/planner.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"
@@ -20,6 +20,7 @@
 #include "downwash/simulation/world_parameters.hpp"
 
 using namespace downwash;
+using namespace downwash::bench;
 
 namespace {
 
@@ -98,20 +99,6 @@ std::optional<Problem> changed(Problem problem, const SceneChange& change, const
         return std::nullopt;
     }
     return problem;
-}
-
-std::string listed(const std::map<std::string, int>& counts) {
-    return joined(counts, ", ", [](const auto& each) { return fmt::format("{} {}", each.second, each.first); });
-}
-
-double share(const std::vector<double>& values, double limit) {
-    return static_cast<double>(std::count_if(values.begin(), values.end(), [&](double v) { return v <= limit; })) /
-           static_cast<double>(std::max<std::size_t>(1, values.size()));
-}
-
-double quantile(std::vector<double> values, double q) {
-    std::sort(values.begin(), values.end());
-    return values.empty() ? 0 : values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
 /// Moments and changes without a simulated outcome.
@@ -316,5 +303,5 @@ int main(int argc, char** argv) {
     program.add_option("--threads", given.threads, "of searches");
     program.add_option("--budget", given.budget_s, "wall time of a replan [s]");
     program.add_option("--fresh", given.fresh_s, "wall time of a search from scratch [s]");
-    return bench::run_program(program, argc, argv, [&] { run(given); });
+    return run_program(program, argc, argv, [&] { run(given); });
 }

@@ -4,104 +4,107 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <ctime>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "../support/measuring.hpp"
+#include "answers.hpp"
 #include "downwash/base/key_error.hpp"
-#include "downwash/base/text.hpp"
 #include "downwash/planner/planner.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
 
 using namespace downwash;
+using namespace downwash::bench;
 
 namespace {
+
+constexpr double bound_ms = 20;
 
 struct Given {
     std::string file, obstacle;
     double lower_m = 0.05;
-    int moments = 100;
+    int moments = 40;
 };
 
-/// Processor time of this thread: others may have the machine.
-double thread_s() {
-    timespec now{};
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-double quantile(std::vector<double> values, double q) {
-    std::ranges::sort(values);
-    return values.empty() ? 0 : values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
-}
-
-int run(const Given& given) {
-    SpaceProblem problem = read_space_problem(given.file);
-    problem.planner.max_iterations = 10'000;
-    problem.planner.certify = false;  // in flight, the first answer has none
-    const auto found = std::ranges::find(problem.obstacles, given.obstacle, &Obstacle::name);
-    if (found == problem.obstacles.end()) {
-        throw_input_error("has no obstacle called '" + given.obstacle + "'", "environment.obstacles");
-    }
-    SpaceSceneChange there, back;
-    there.put = back.put = {*found};
-    there.put.front().center_world_m[2] -= given.lower_m;
-
-    SpaceSolveOptions options;
-    options.stop_at_first_solution = true;
-    SpacePlanner planner(problem, options);
-    if (planner.solve().status != Status::solved) {
-        fmt::print("no plan for {}\n", problem.name);
-        return 1;
-    }
-    const SpacePlan plan = *planner.plan();
-    const std::int64_t end = plan.reference.back().tick;
+/// First answers at many moments, in milliseconds of the calling thread's processor time: others may have the machine.
+struct FirstAnswers {
     std::map<std::string, int> advice;
-    std::vector<double> safe_s, all_s;
+    std::vector<double> safe_ms, all_ms;
+};
+
+FirstAnswers first_answers(const Given& given, SpacePlanner& planner, const SpaceStart& start) {
+    SpaceSceneChange there, back;
+    there.put = back.put = {*std::ranges::find(planner.problem().obstacles, given.obstacle, &Obstacle::name)};
+    there.put.front().center_world_m[2] -= given.lower_m;
+    const SpacePlan plan = *planner.plan();
+    FirstAnswers first;
     for (int i = 0; i < given.moments; ++i) {
-        const std::int64_t tick = end * i / given.moments;
-        const SpaceStart here = planner.predicted(problem.start, plan, tick);
+        const std::int64_t tick = plan.reference.back().tick * i / given.moments;
+        const SpaceStart here = planner.predicted(start, plan, tick);
         planner.adopt(plan);
         SpaceReplanOptions how;
         how.time_limit_s = 0;  // nothing but the first answer and whether the plan still holds
-        double begun_s = thread_s(), first_s = -1;
+        const double begun_s = processor_time_s();
+        bool is_first = true;
         how.on_answer = [&](const SpaceAnswer& answer) {
-            if (first_s < 0) {
-                first_s = thread_s() - begun_s;
-                ++advice[std::string(name_of(answer.advice))];
-                if (answer.advice == Advice::stop) {
-                    safe_s.push_back(first_s);
-                }
-                all_s.push_back(first_s);
+            if (!is_first) {
+                return;
+            }
+            is_first = false;
+            first.all_ms.push_back(1e3 * (processor_time_s() - begun_s));
+            ++first.advice[std::string(name_of(answer.advice))];
+            if (answer.advice != Advice::none) {
+                first.safe_ms.push_back(first.all_ms.back());
             }
         };
         static_cast<void>(planner.replan(here, tick, there, how));
         how.on_answer = {};
         static_cast<void>(planner.replan(here, tick, back, how));
     }
-    fmt::print("{}: {} moments of a plan of {:.1f} s, {} {:.2f} m lower\n", problem.name, given.moments,
-               plan.duration_s(), given.obstacle, given.lower_m);
-    fmt::print("first answers: {}\n",
-               joined(advice, ", ", [](const auto& each) { return fmt::format("{} {}", each.second, each.first); }));
+    return first;
+}
+
+void run(const Given& given) {
+    SpaceProblem problem = read_space_problem(given.file);
+    problem.planner.max_iterations = 10'000;
+    problem.planner.time_limit_s.reset();
+    problem.planner.certify = false;  // in flight, the first answer has none
+    if (std::ranges::find(problem.obstacles, given.obstacle, &Obstacle::name) == problem.obstacles.end()) {
+        throw_input_error("has no obstacle called '" + given.obstacle + "'", "environment.obstacles");
+    }
+    SpaceSolveOptions options;
+    options.stop_at_first_solution = true;
+    SpacePlanner planner(problem, options);
+    if (planner.solve().status != Status::solved) {
+        throw std::runtime_error("no plan for " + problem.name);
+    }
     fmt::print(
-        "first safe answer, processor time: median {:.1f} ms, 95 % within {:.1f} ms; all answers: 95 % within "
-        "{:.1f} ms\n",
-        1e3 * quantile(safe_s, 0.5), 1e3 * quantile(safe_s, 0.95), 1e3 * quantile(all_s, 0.95));
-    return 0;
+        "`{}`, a plan of {:.1f} s. At {} moments of it, evenly spread, `{}` is {:.2f} m lower than believed.\n\n",
+        problem.name, planner.plan()->duration_s(), given.moments, given.obstacle, given.lower_m);
+    const FirstAnswers first = first_answers(given, planner, problem.start);
+    fmt::print("| | |\n| --- | ---: |\n| first answers | {} |\n", listed(first.advice));
+    for (const auto& [what, times_ms] :
+         {std::pair("first safe answer", first.safe_ms), {"all answers", first.all_ms}}) {
+        fmt::print("| {}, processor time | median {:.1f} ms, 95 % within {:.1f} ms, all within {:.1f} ms |\n", what,
+                   quantile(times_ms, 0.5), quantile(times_ms, 0.95), quantile(times_ms, 1));
+    }
+    const double in_time = share(first.safe_ms, bound_ms);
+    fmt::print("\n| bound | found | |\n| --- | --- | --- |\n");
+    print_bound(fmt::format("first safe answer within {:g} ms at 95 % of the moments that have one", bound_ms),
+                fmt::format("{:.1f} % of {}", 100 * in_time, first.safe_ms.size()),
+                !first.safe_ms.empty() && in_time >= 0.95);
 }
 
 }  // namespace
 
-int main(int count, char** words) {
-    if (count < 3) {
-        fmt::print(stderr, "usage: {} PROBLEM.yaml OBSTACLE [MOMENTS]\n", words[0]);
-        return 2;
-    }
-    Given given{words[1], words[2]};
-    if (count > 3) {
-        given.moments = std::stoi(words[3]);
-    }
-    return run(given);
+int main(int argc, char** argv) {
+    CLI::App program("Lowers an obstacle in the middle of a flight in space.");
+    Given given;
+    program.add_option("problem", given.file, "problem file")->required();
+    program.add_option("obstacle", given.obstacle, "its name")->required();
+    program.add_option("--moments", given.moments, "of the plan");
+    program.add_option("--lower", given.lower_m, "by so much [m]");
+    return run_program(program, argc, argv, [&] { run(given); });
 }

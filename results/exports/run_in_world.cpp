@@ -118,25 +118,33 @@ SpacePose pose_of(const SpaceMotion& motion) {
     return {motion.position_m, motion.attitude, motion.joints_rad};
 }
 
+/// What runs of both families have. @param setpoint as of way_of()
+template <class AnyRun, class ToSetpoint>
+RunInWorld begun(const AnyRun& run, const ToSetpoint& setpoint) {
+    const auto& problem = run.problem;
+    RunInWorld seen{.name = problem.name,
+                    .solution_text = run.solution_text,
+                    .flight = run.flight,
+                    .obstacles = problem.obstacles,
+                    .rate_hz = problem.robot.controller.rate_hz,
+                    .max_speed_m_s = problem.motion.max_speed_m_s};
+    if (run.plan) {
+        seen.plan = way_of(*run.plan, run.flight, goals_of(in_order(problem, run.order)).back().hold_s, setpoint);
+    }
+    seen.robot = [&problem] { return surfaces_of(problem.robot); };
+    return seen;
+}
+
 }  // namespace
 
 RunInWorld in_world(const RunRecord& run) {
     const Problem& problem = run.problem;
     const PlaneOfMotion& plane = problem.plane;
-    RunInWorld seen{.name = problem.name,
-                    .solution_text = run.solution_text,
-                    .flight = run.flight,
-                    .obstacles = problem.obstacles,
-                    .rotors = problem.robot.rotors.positions_m.size(),
-                    .rate_hz = problem.robot.controller.rate_hz,
-                    .max_speed_m_s = problem.motion.max_speed_m_s,
-                    .has_touch = asks_for_contact(problem.goal),
-                    .joints = {{"arm_joint", planar_axes[plane::arm]}}};
-    if (run.plan) {
-        seen.plan =
-            way_of(*run.plan, run.flight, in_order(problem, run.order).goal.hold_s,
-                   [&plane](double t_s, const ReferencePoint& point) { return setpoint_of(t_s, point, plane); });
-    }
+    RunInWorld seen =
+        begun(run, [&plane](double t_s, const ReferencePoint& point) { return setpoint_of(t_s, point, plane); });
+    seen.rotors = problem.robot.rotors.positions_m.size();
+    seen.has_touch = asks_for_contact(problem.goal);
+    seen.joints = {{"arm_joint", planar_axes[plane::arm]}};
     const Start& start = problem.start;
     seen.start = planar_pose(plane, start.at[plane::x], start.at[plane::z], start.pitch_rad, start.at[plane::arm]);
     seen.pose = [&plane, at = Columns(run.flight, {"x_m", "z_m", "pitch_rad", "arm_rad"})](std::size_t row) {
@@ -145,26 +153,17 @@ RunInWorld in_world(const RunRecord& run) {
     seen.end_effector_m = [&plane, at = Columns(run.flight, {"ee_x_m", "ee_z_m"})](std::size_t row) {
         return plane.to_world(at(0, row), 0, at(1, row));
     };
-    seen.robot = [&problem] { return surfaces_of(problem.robot); };
     return seen;
 }
 
 RunInWorld in_world(const SpaceRunRecord& run) {
     const SpaceProblem& problem = run.problem;
     const int joints = problem.robot.joints();
-    RunInWorld seen{.name = problem.name,
-                    .solution_text = run.solution_text,
-                    .flight = run.flight,
-                    .obstacles = problem.obstacles,
-                    .rotors = problem.robot.plant.rotors.size(),
-                    .rate_hz = problem.robot.controller.rate_hz,
-                    .max_speed_m_s = problem.motion.max_speed_m_s,
-                    .turns = true,
-                    .has_touch = std::ranges::any_of(problem.goals, has_touch)};
-    if (run.plan) {
-        seen.plan = way_of(*run.plan, run.flight, goals_of(in_order(problem, run.order)).back().hold_s,
-                           [joints](double t_s, const SpacePoint& point) { return setpoint_of(t_s, point, joints); });
-    }
+    RunInWorld seen =
+        begun(run, [joints](double t_s, const SpacePoint& point) { return setpoint_of(t_s, point, joints); });
+    seen.rotors = problem.robot.plant.rotors.size();
+    seen.turns = true;
+    seen.has_touch = std::ranges::any_of(problem.goals, has_touch);
     seen.start = pose_of(start_motion(problem.start));
     Columns columns(run.flight, {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"});
     const std::size_t first_joint = columns.count();
@@ -182,7 +181,6 @@ RunInWorld in_world(const SpaceRunRecord& run) {
     seen.end_effector_m = [at = Columns(run.flight, {"ee_x_m", "ee_y_m", "ee_z_m"})](std::size_t row) {
         return Vector3{at(0, row), at(1, row), at(2, row)};
     };
-    seen.robot = [&problem] { return surfaces_of(problem.robot); };
     return seen;
 }
 

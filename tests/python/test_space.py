@@ -92,7 +92,7 @@ def test_arrays_have_the_names_and_numbers_of_the_files(tmp_path, planned):
     attitude = np.stack([planned.flight[name] for name in ("qw", "qx", "qy", "qz")])
     assert np.allclose(np.linalg.norm(attitude, axis=0), 1)
     assert planned.cost == planned.record["cost"]
-    assert planned.map is None
+    assert planned.record["stops"] is not None
 
 
 def test_a_plan_flies_again_and_in_worlds(tmp_path, girder, planned):
@@ -134,17 +134,84 @@ def test_worlds_have_columns_for_every_axis(girder):
     assert all(len(np.unique(column)) > 1 for name, column in worlds.items() if name.startswith("aero.scene"))
 
 
+UNDER_GIRDER = [[0.0, 0.0, 3.2], [0.5, 0.1, 3.0], [-1.0, -0.3, 2.5], [0.0, 0.0, 0.7]]
+
+
+def test_thrust_ratios_in_space_are_those_of_a_volume_that_fills_where_it_is_asked(girder, planned):
+    k = downwash.factor(girder, UNDER_GIRDER, yaw_deg=30)
+    assert k.shape == (4,) and k[0] > k[1] > 1 and k[3] > 1  # a flange above, then the ground below
+    volumes = downwash.AeroMap.build(girder)
+    before = volumes.memory_bytes
+    assert volumes.factor(UNDER_GIRDER, yaw_deg=30) == pytest.approx(k, abs=0.03)
+    assert volumes.memory_bytes > before
+    assert len(volumes.extent) == 6 and volumes.extent[0] < -3 < 3 < volumes.extent[1]
+    assert planned.map.factor(UNDER_GIRDER, rotor=6, threads=2) == pytest.approx(
+        downwash.factor(girder, UNDER_GIRDER, rotor=6), abs=0.03
+    )
+    inside = [*UNDER_GIRDER, [0, 0, 3.42]]
+    for flyable in (downwash.is_flyable(girder, inside), volumes.is_flyable(inside)):
+        assert flyable.tolist() == [True, True, True, True, False]
+    for points, message in [([[0, 3]], r"expected \(n, 3\), world coordinates"), ([[0, 0, float("nan")]], "not finite")]:
+        with pytest.raises(downwash.InputError, match=message):
+            downwash.factor(girder, points)
+    with pytest.raises(downwash.InputError, match="expected a number from 1 to 6"):
+        downwash.factor(girder, UNDER_GIRDER, rotor=7)
+
+
+def test_a_map_is_for_the_next_search_in_the_same_world(girder, planned):
+    settings = {"seed": 2, "max_iterations": 60}
+    again = downwash.solve(planned.problem, map=planned.map, **settings)
+    assert all(np.array_equal(again.plan[name], planned.plan[name]) for name in again.plan)
+    other = planned.problem.replace({"environment.obstacles[1].box.center_m": [0.1, 0, 4]})
+    with pytest.raises(downwash.InputError, match="map: is of another scene"):
+        downwash.solve(other, map=planned.map, **settings)
+
+
+def test_hovers_are_those_of_the_program(folder, girder, json_of):
+    places = [[0, 0, 2.5], [1.5, -1, 3.0], [0, 0, 4.0]]
+    hover = downwash.hold(girder, places, yaw_deg=20, threads=2)
+    options = [word for place in places for word in ("--place", *place)]
+    said = json_of(
+        "aeromap", "hold", folder / "space" / "around_a_girder.yaml", *options, "--yaw-deg", 20
+    )["points"]
+    assert hover["verdict"].tolist() == [each["verdict"] for each in said]
+    assert hover["verdict"][2] != "stable" and np.isnan(hover["tilt_deg"][2])
+    for i, each in enumerate(said[:2]):
+        trim, stability = each["trim"], each["stability"]
+        assert hover["slowest_loop"][i] == stability["slowest_loop"]
+        expected = {
+            "reference_z_m": trim["reference"]["z_m"],
+            "reference_joint_2_deg": trim["reference"]["joints_deg"][1],
+            "qw": trim["attitude"][0],
+            "rotor_3_cmd_n": trim["rotor_commands_n"][2],
+            "joint_1_torque_nm": trim["joint_torques_nm"][0],
+            "saturation": trim["saturation"],
+            "growth_rate_1_s": stability["growth_rate_1_s"],
+            "roll_slope_nm_rad": stability["roll_slope_nm_rad"],
+        }
+        for name, value in expected.items():
+            assert hover[name][i] == pytest.approx(value, rel=1e-9, abs=1e-12), name
+    with pytest.raises(downwash.InputError, match="joints_deg: has 1 numbers"):
+        downwash.hold(girder, places, joints_deg=[3])
+
+
 def test_what_is_not_for_space_says_so(girder, planned, open_air):
     calls = [
-        lambda: downwash.Planner(girder),
-        lambda: downwash.hold(girder, [[0, 3]]),
-        lambda: downwash.factor(girder, [[0, 0, 3]]),
-        lambda: downwash.AeroMap.build(girder),
+        lambda: downwash.AeroMap.read("map.bin", girder),
         lambda: downwash.figures.scene(girder),
         lambda: downwash.figures.plan(planned, with_scene=False),
     ]
     for call in calls:
         with pytest.raises(downwash.InputError, match="environment.bounds.y_m makes this a problem in space"):
+            call()
+    for call, message in [
+        (lambda: downwash.hold(girder, [[0, 0, 3]], arm_deg=0), "arm_deg: is for problems in a vertical plane"),
+        (lambda: downwash.hold(open_air, [[0, 3]], yaw_deg=0), "joints_deg: are for problems in space"),
+        (lambda: downwash.factor(open_air, [[0, 3]], yaw_deg=90), "yaw_deg: is for problems in space"),
+        (lambda: planned.map.arrays(), "AeroMap.arrays is for maps in a vertical plane"),
+        (lambda: planned.map.write("map.bin"), "AeroMap.write is for maps in a vertical plane"),
+    ]:
+        with pytest.raises(downwash.InputError, match=message):
             call()
     with pytest.raises(downwash.InputError, match="of a problem in space, and the problem is one in a vertical plane"):
         downwash.execute(open_air, planned)

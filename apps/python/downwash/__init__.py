@@ -13,7 +13,7 @@ from .aeromap import AeroMap, factor, is_flyable
 from .analysis import Validation, draw_worlds, hold, validate
 from .campaign import Campaign
 from .errors import FolderError, InputError, LocatedError, OtherRunError, ProblemError, Stopped
-from .planner import Answer, Planner, ReferencePoint, Start
+from .planner import Answer, Planner, ReferencePoint, SpaceStart, Start
 from .problem import Problem, explain, read_problem
 from .solution import Columns, Flight, Progress, Solution, execute, read_solution, solve
 
@@ -33,6 +33,7 @@ __all__ = [
     "Progress",
     "ReferencePoint",
     "Solution",
+    "SpaceStart",
     "Start",
     "Stopped",
     "Validation",

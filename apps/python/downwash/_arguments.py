@@ -20,6 +20,7 @@ _MADE_BY = {
     "AeroMap": "AeroMap.build() and solution.map are",
     "Problem": "read_problem() returns",
     "Solution": "solve() and read_solution() return",
+    "SpaceStart": "SpaceStart(...) and SpaceStart.from_row() return",
     "Start": "Start(...) and Start.from_row() return",
 }
 _RANGES = {
@@ -75,6 +76,14 @@ def numbers(name: str, value: npt.ArrayLike) -> npt.NDArray[np.float64]:
         raise TypeError(f"{name}: {value!r} is no array of numbers, with rows that are equally long") from None
 
 
+def require_made(name: str, value: object, kind: str) -> None:
+    """Raises TypeError unless a value is of one of the package's classes."""
+    if not isinstance(value, getattr(sys.modules["downwash"], kind)):
+        raise TypeError(
+            f"{name} is of the type {type(value).__name__}: expected a downwash.{kind}, which {_MADE_BY[kind]}"
+        )
+
+
 def _check(name: str, value: object, kind: str) -> None:
     if kind == "int":
         _number(name, value, "a whole number")
@@ -90,10 +99,8 @@ def _check(name: str, value: object, kind: str) -> None:
         raise TypeError("plan is None, as planner.plan is before there is one: call solve() first")
     elif kind.startswith("Mapping[") and not isinstance(value, Mapping):
         raise TypeError(f"{name} is {value!r}: expected a dict")
-    elif kind in _MADE_BY and not isinstance(value, getattr(sys.modules["downwash"], kind)):
-        raise TypeError(
-            f"{name} is of the type {type(value).__name__}: expected a downwash.{kind}, which {_MADE_BY[kind]}"
-        )
+    elif kind in _MADE_BY:
+        require_made(name, value, kind)
 
 
 def checked(elsewhere: Collection[str] = ()) -> Callable[[_Function], _Function]:

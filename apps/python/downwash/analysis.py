@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from . import _core
 from ._arguments import checked, numbers
-from .problem import Problem, in_plane
+from .errors import InputError
+from .problem import Problem
 from .solution import Solution, StopSignal, _require_same_family
 
 __all__ = ["Validation", "draw_worlds", "hold", "validate"]
@@ -17,20 +18,43 @@ __all__ = ["Validation", "draw_worlds", "hold", "validate"]
 
 @checked()
 def hold(
-    problem: Problem, points: npt.ArrayLike, *, arm_deg: float | None = None, threads: int | None = None
+    problem: Problem,
+    points: npt.ArrayLike,
+    *,
+    arm_deg: float | None = None,
+    yaw_deg: float | None = None,
+    joints_deg: npt.ArrayLike | None = None,
+    threads: int | None = None,
 ) -> Dict[str, npt.NDArray[Any]]:
-    """Analyses whether the vehicle can hover with its centre of mass at points (n, 2) in plane coordinates [m].
+    """Analyses whether the vehicle can hover with its centre of mass at points [m].
 
-    arm_deg: arm angle relative to the multirotor [deg]; default: that of the problem's start
+    points: (n, 2) plane coordinates x, z, or for a problem in space (n, 3) world coordinates x, y, z
+    arm_deg: in a plane, arm angle relative to the multirotor [deg]; default: that of the problem's start
+    yaw_deg: in space, heading [deg]; default: that of the start
+    joints_deg: in space, one angle for each joint [deg]; default: those of the start
     threads: number of threads; default: one per processor
 
-    Returns the figures of `downwash aeromap hold --json` (docs/hold.md) as columns: `verdict`, `limit`, the effect of
-    the surfaces, the trim (`reference_x_m`, ...) and the stability. What a verdict leaves undefined is NaN.
+    Returns the figures of `downwash aeromap hold --json` (docs/hold.md) as columns: `verdict`, `limit`, the trim
+    (`reference_x_m`, ...) and the stability; in a plane also the effect of the surfaces, in space `slowest_loop`, the
+    attitude `qw` to `qz`, and `rotor_1_cmd_n`, ... What a verdict leaves undefined is NaN, or an empty text.
     """
-    columns, verdicts, limits = _core.hold(in_plane(problem, "hold"), numbers("points", points), arm_deg, threads or 0)
+    at = numbers("points", points)
+    texts: Dict[str, list[str]] = {}
+    if isinstance(problem._core, _core.SpaceProblem):
+        if arm_deg is not None:
+            raise InputError("arm_deg: is for problems in a vertical plane: expected joints_deg for one in space")
+        joints = None if joints_deg is None else np.atleast_1d(numbers("joints_deg", joints_deg)).tolist()
+        columns, texts["verdict"], texts["limit"], texts["slowest_loop"] = _core.hold_in_space(
+            problem._core, at, yaw_deg, joints, threads or 0
+        )
+    else:
+        if yaw_deg is not None or joints_deg is not None:
+            raise InputError(
+                "yaw_deg and joints_deg: are for problems in space: expected arm_deg for one in a vertical plane"
+            )
+        columns, texts["verdict"], texts["limit"] = _core.hold(problem._core, at, arm_deg, threads or 0)
     table: Dict[str, npt.NDArray[Any]] = dict(columns)
-    table["verdict"] = np.array(verdicts, dtype=str)
-    table["limit"] = np.array(limits, dtype=str)
+    table.update({name: np.array(column, dtype=str) for name, column in texts.items()})
     return table
 
 

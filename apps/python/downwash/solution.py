@@ -140,14 +140,13 @@ class Solution:
 
     @property
     def map(self) -> AeroMap | None:
-        """The aero map that the search flew in, for the next search in the same world.
-
-        None if it took none, and of a problem in space.
-        """
+        """The aero map that the search flew in, for the next search in the same world; None if it took none."""
+        core: _core.AeroMap | _core.SurfaceVolumes | None
         if isinstance(self._core, _core.SpaceSolution):
-            return None
-        core = _core.AeroMap.of_solution(self._core)
-        return None if core is None else AeroMap(core)
+            core = _core.SurfaceVolumes.of_solution(self._core)
+        else:
+            core = _core.AeroMap.of_solution(self._core)
+        return None if core is None else AeroMap(core, self.problem)
 
     @checked()
     def write(self, folder: Path, *, force: bool = False) -> None:
@@ -198,8 +197,7 @@ def solve(
     threads: number of threads, on which the result does not depend; default: one per processor
     stop_at_first: end with the first plan that is accepted
     cache: folder in which the searches' parts of aero maps are kept; default: none
-    map: aero map of the same world: `solution.map` or an AeroMap of the problem; default: a new one. Problems in space
-        have none
+    map: aero map of the same world: `solution.map` or an AeroMap of the problem; default: a new one
     on_progress: called with a Progress ten times a second, by the thread that called `solve`
     stop: a threading.Event
     """
@@ -223,7 +221,7 @@ def solve(
         threads or 0,
         stop_at_first,
         os.fspath(cache) if cache is not None else "",
-        None if map is None else map._core,
+        None if map is None else map._for(problem),
         tell,
         stop,
     )
