@@ -1,11 +1,10 @@
 #pragma once
 
-// Private to simulation/: what drawing configurations for a goal (space_goal_sampler.cpp) and finding the nearest one
+// Private to simulation/: what drawing configurations for a goal (space_goal_drawing.cpp) and finding the nearest one
 // (space_goal_nearest.cpp) share.
 
 #include <array>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <vector>
 
