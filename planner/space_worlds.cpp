@@ -424,9 +424,11 @@ const FlownFleetOf<Space>& SpaceProblemWorlds::screened(const CourseOf<Space>& c
 Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const SpacePlan& part,
                                        const StopCondition& is_over, const WorldCounter& counter) {
     // Until a flight has failed as a whole, a part only has to do as well as the whole must. To tell that each keeps
-    // its share of the failures takes thousands of worlds, and most parts take next to nothing of it.
+    // its share of the failures takes thousands of worlds, and most parts take next to nothing of it. So every flight
+    // that fails as a whole makes it harder for parts, down to that share.
     constexpr double first_confidence = 0.5, confidence = 0.8;
     const bool is_first = before.attempts == 0;
+    const double weak_parts = std::min(static_cast<double>(goals()), 1 + static_cast<double>(before.attempts));
     const std::size_t visited = before.goals.size();
     const SpacePlan whole = before.plan.followed_by(part);
     const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
@@ -440,7 +442,7 @@ Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const Spac
         after.vehicles.insert(after.vehicles.end(), vehicles.begin(), vehicles.end());
         return samples;
     };
-    const double share = problem_.planner.max_failure_probability / (is_first ? 1 : static_cast<double>(goals()));
+    const double share = problem_.planner.max_failure_probability / weak_parts;
     Certificate certificate = tested({first_screening, fly}, is_over, counter,
                                      CertificateRecord(share, is_first ? first_confidence : confidence, 1, visited));
     if (certificate.is_given) {
