@@ -433,12 +433,29 @@ Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const Spac
     const SpacePlan whole = before.plan.followed_by(part);
     const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
     FlownFleetOf<Space> after{with_hover(whole, problem_.goals[visited], *model_.flight).reference, {}};
+    // A vehicle that was lost before is a failure of the first part after which it is missing; in worlds in which only
+    // longer flights were flown, of the last one.
+    const auto part_that_lost = [&](std::size_t world) {
+        std::size_t lost_on = 0;
+        const auto has_it = [&](const FlownFleetOf<Space>& fleet) {
+            return world >= fleet.vehicles.size() || fleet.vehicles[world].has_value();
+        };
+        while (lost_on + 1 < visited && has_it(screened_[lost_on + 1])) {
+            ++lost_on;
+        }
+        return lost_on;
+    };
     const auto fly = [&](std::uint64_t number, std::span<const SpaceWorld> worlds) {
         const FlownFleetOf<Space>& fleet = screened(before, number + worlds.size(), is_over);
         const auto begin = fleet.vehicles.begin() + static_cast<std::ptrdiff_t>(number);
         Vehicles vehicles(begin, begin + static_cast<std::ptrdiff_t>(worlds.size()));
         std::vector<WorldSample> samples =
             fly_on(vehicles, whole, first, visited + 1, first_screening + number, worlds, is_over);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            if (!fleet.vehicles[number + i]) {
+                samples[i].goal = part_that_lost(number + i);
+            }
+        }
         after.vehicles.insert(after.vehicles.end(), vehicles.begin(), vehicles.end());
         return samples;
     };
