@@ -120,7 +120,9 @@ void AnyOrder<Family>::search() {
     const PlaceOrder likely = comparison_.likely();
     is_thrifty_ = is_limited() && !(is_timed() && has_energy_to_spare(likely));
     if (!is_thrifty_ && is_order(likely)) {
-        static_cast<void>(attempt(likely, is_timed() ? left_ : left_.part(share_of_first), true));
+        const std::uint64_t least = min_iterations_of_part<Family> * (likely.places.size() + 1);
+        const SearchBudget first = left_.part(share_of_first).at_least_iterations(least).at_most(left_);
+        static_cast<void>(attempt(likely, is_timed() ? left_ : first, true));
     }
     if (!is_done()) {
         compare_orders(left_.part(is_timed() && !has_way() ? share_before_a_way : share_of_legs));

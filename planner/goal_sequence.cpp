@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "downwash/planner/family_parts.hpp"
@@ -105,9 +106,10 @@ void GoalSequenceOf<Family>::end_round() {
 }
 
 /// A part was not found in time. Until there is a whole way, it is searched anew, every second time from another end of
-/// the part before: the goal may be out of reach from the first one.
+/// the part before: the goal may be out of reach from the first one. In space at once where the search came no nearer
+/// to the goal than where it began: that may be a dead end, which no edge leaves in all worlds.
 template <class Family>
-bool GoalSequenceOf<Family>::give_up() {
+bool GoalSequenceOf<Family>::give_up(bool came_nearer) {
     if (has_way()) {
         return false;
     }
@@ -117,7 +119,8 @@ bool GoalSequenceOf<Family>::give_up() {
         return false;
     }
     const bool is_second = ++given_up_[part] % 2 == 0;
-    return go_back(is_second && part > 0 ? part - 1 : part);
+    const bool is_dead_end = std::is_same_v<Family, Space> && !came_nearer;
+    return go_back((is_second || is_dead_end) && part > 0 ? part - 1 : part);
 }
 
 /// Before there is a whole way: what a search for a part may take. Luck differs between searches, so that several short
@@ -128,7 +131,11 @@ auto GoalSequenceOf<Family>::budget_of(std::size_t part) const -> SearchBudget {
     // Where energy is limited it is not the first plan of a part that counts, but a cheap one.
     const double first_share = (is_thrifty() ? 0.6 : 0.25) / static_cast<double>(goals_.size());
     const int doublings = static_cast<int>(std::min(given_up_[part], 30U));
-    return whole_.part(first_share).within_s(longest_first_s).part(std::ldexp(1.0, doublings)).at_most(whole_);
+    return whole_.part(first_share)
+        .within_s(longest_first_s)
+        .at_least_iterations(min_iterations_of_part<Family>)
+        .part(std::ldexp(1.0, doublings))
+        .at_most(whole_);
 }
 
 /// Goes back to search the way to some goal anew. False if there is no time for it.
@@ -154,7 +161,8 @@ bool GoalSequenceOf<Family>::goes_on_after(SearchResult part) {
     SearchRecord spent = part.record;
     if (found.status != Status::solved && !part.weak_goal) {
         part_budget_.charge(spent);
-        vain_s_[number] += spent.wall_s;
+        // The check of a plan may take much longer than the search for it, and tells that there is a way.
+        vain_s_[number] += std::min(spent.wall_s, part_budget_.time_s());
     }
     round_.left.spend(spent);
     left_.spend(spent);
@@ -184,13 +192,13 @@ bool GoalSequenceOf<Family>::goes_on_after(SearchResult part) {
         return go_back(*part.weak_goal);
     }
     if (found.status != Status::solved) {
-        return give_up();
+        return give_up(found.plan.has_value());
     }
     if (way.plan->reference.back().tick > max_plan_ticks) {
         ++record_.rejected["too_long"];
         way.plan = course.plan;
         way.cost = course.cost;
-        return give_up();
+        return give_up(true);
     }
     round_.part_costs.push_back(found.cost);
     if (is_last) {

@@ -15,6 +15,13 @@
 
 namespace downwash::planning {
 
+/// What a search for the way to one of several goals takes at least where iterations are limited: of fewer nobody
+/// learns whether there is a way. Of 0 every share counts, however small.
+template <class Family>
+inline constexpr std::uint64_t min_iterations_of_part = 0;
+template <>
+inline constexpr std::uint64_t min_iterations_of_part<Space> = 24;
+
 /// How a sequence of searches uses its limits.
 struct SequenceEffort {
     double min_round = 0;  ///< share of the limits that a round after the first takes at least
@@ -83,7 +90,7 @@ class DOWNWASH_EXPORT GoalSequenceOf {
     [[nodiscard]] Round new_round(const SearchBudget& budget) const;
     [[nodiscard]] bool goes_on_after(SearchResult part);
     [[nodiscard]] bool go_back(std::size_t part);
-    [[nodiscard]] bool give_up();
+    [[nodiscard]] bool give_up(bool came_nearer);
     [[nodiscard]] bool is_thrifty() const { return problem_.energy_budget_j && !effort_.has_energy_to_spare; }
     void end_round();
     [[nodiscard]] SearchBudget budget_of(std::size_t part) const;

@@ -70,6 +70,15 @@ class SearchBudget {
         return more;
     }
 
+    /// This budget, but at least so many iterations; one of time stays.
+    [[nodiscard]] SearchBudget at_least_iterations(std::uint64_t least) const {
+        SearchBudget more = *this;
+        if (iterations_) {
+            more.iterations_ = std::max(*iterations_, least);
+        }
+        return more;
+    }
+
     /// Time that is left [s]; infinite without a limit of it.
     [[nodiscard]] double time_s() const { return time_s_; }
 

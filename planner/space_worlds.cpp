@@ -423,23 +423,42 @@ const FlownFleetOf<Space>& SpaceProblemWorlds::screened(const CourseOf<Space>& c
 Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const SpacePlan& part,
                                        const StopCondition& is_over, const WorldCounter& counter) {
     // Until a flight has failed as a whole, a part only has to do as well as the whole must. To tell that each keeps
-    // its share of the failures takes thousands of worlds, and most parts take next to nothing of it.
+    // its share of the failures takes thousands of worlds, and most parts take next to nothing of it. So every flight
+    // that fails as a whole makes it harder for parts, down to that share.
     constexpr double first_confidence = 0.5, confidence = 0.8;
     const bool is_first = before.attempts == 0;
+    const double weak_parts = std::min(static_cast<double>(goals()), 1 + static_cast<double>(before.attempts));
     const std::size_t visited = before.goals.size();
     const SpacePlan whole = before.plan.followed_by(part);
     const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
     FlownFleetOf<Space> after{with_hover(whole, problem_.goals[visited], *model_.flight).reference, {}};
+    // A vehicle that was lost before is a failure of the first part after which it is missing; in worlds in which only
+    // longer flights were flown, of the last one.
+    const auto part_that_lost = [&](std::size_t world) {
+        std::size_t lost_on = 0;
+        const auto has_it = [&](const FlownFleetOf<Space>& fleet) {
+            return world >= fleet.vehicles.size() || fleet.vehicles[world].has_value();
+        };
+        while (lost_on + 1 < visited && has_it(screened_[lost_on + 1])) {
+            ++lost_on;
+        }
+        return lost_on;
+    };
     const auto fly = [&](std::uint64_t number, std::span<const SpaceWorld> worlds) {
         const FlownFleetOf<Space>& fleet = screened(before, number + worlds.size(), is_over);
         const auto begin = fleet.vehicles.begin() + static_cast<std::ptrdiff_t>(number);
         Vehicles vehicles(begin, begin + static_cast<std::ptrdiff_t>(worlds.size()));
         std::vector<WorldSample> samples =
             fly_on(vehicles, whole, first, visited + 1, first_screening + number, worlds, is_over);
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            if (!fleet.vehicles[number + i]) {
+                samples[i].goal = part_that_lost(number + i);
+            }
+        }
         after.vehicles.insert(after.vehicles.end(), vehicles.begin(), vehicles.end());
         return samples;
     };
-    const double share = problem_.planner.max_failure_probability / (is_first ? 1 : static_cast<double>(goals()));
+    const double share = problem_.planner.max_failure_probability / weak_parts;
     Certificate certificate = tested({first_screening, fly}, is_over, counter,
                                      CertificateRecord(share, is_first ? first_confidence : confidence, 1, visited));
     if (certificate.is_given) {

@@ -75,6 +75,37 @@ std::optional<WantedBall> wanted_ball(const SpaceGoalKind& kind) {
 /// What a reference may use of the goal's tolerances, and rounding.
 constexpr double near_goal_share = usable_tolerance_share + 1e-6;
 
+/// What share of the goal's tolerances a vehicle at a configuration uses when it is 5 cm off its place and 3 degrees
+/// off its yaw and every joint, about as much as in worlds: to first order, each in its worse direction.
+double used_share_when_off(const SpaceConfiguration& at, const SpaceSearchSpace& space) {
+    constexpr double off_m = 0.05, off_rad = 0.05;
+    const double there = space.error(at).used_share;
+    const auto more = [&](std::size_t axis, double off) {
+        double most = 0;
+        for (const double by : {off, -off}) {
+            SpaceConfiguration beside = at;
+            beside[axis] += by;
+            const SpaceGoalError error = space.error(beside);
+            most = std::max(most, error.is_hidden ? 1 : error.used_share - there);
+        }
+        return most;
+    };
+    double used = there + std::max({more(0, off_m), more(1, off_m), more(2, off_m)});
+    for (std::size_t axis = space::yaw; axis < space.axes().size(); ++axis) {
+        used += more(axis, off_rad);
+    }
+    return used;
+}
+
+/// How well a configuration in the goal region suits vehicles in worlds: 1 where it is clear of obstacles by two rotor
+/// radii, where surfaces do not act much on rotors any more, and where the goal is met by a vehicle that is somewhat
+/// off; less where it is nearer or the goal is missed then.
+double ease_at(const SpaceConfiguration& at, const SpaceSearchSpace& space, const SpaceProblemModel& model) {
+    const double enough_m = 2 * model.problem().robot.rotor_radius_m;
+    const double room = model.collisions().clearance_m(level_at(at), enough_m) / enough_m;
+    return room - std::max(0.0, used_share_when_off(at, space) - 1);
+}
+
 std::span<const SpaceGoal> alternatives(const SpaceGoal& goal) noexcept {
     return goal.any_of.empty() ? std::span(&goal, 1) : std::span(goal.any_of);
 }
@@ -132,13 +163,39 @@ SpaceConfiguration SpaceSearchSpace::sample_in_transport(Random& random) const {
     return c;
 }
 
-std::optional<SpaceConfiguration> SpaceSearchSpace::sample_goal(Random& random) const {
-    // Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerance; of this part
-    // worlds leave less.
+/// Half of the samples aim at the goal itself, the others anywhere in the usable part of its tolerances; worlds leave
+/// less of that. Where nothing is free so near to the middle, samples come from farther and farther out.
+std::optional<SpaceConfiguration> SpaceSearchSpace::drawn_at_goal(Random& random) const {
+    constexpr int widenings = 3, tries = 25;
     const double usable = model_.problem().uncertainty ? 0.5 * usable_tolerance_share : usable_tolerance_share;
     const double share = random.chance(0.5) ? 0 : usable * random.uniform(0, 1);
-    const SpaceGoalSample drawn = sampler_.sample(random, share);
-    return drawn.place ? std::optional(drawn.place->at) : std::nullopt;
+    for (int i = 0; i <= widenings; ++i) {
+        const double wider = share + (usable_tolerance_share - share) * i / widenings;
+        if (const SpaceGoalSample drawn = sampler_.sample(random, wider, tries); drawn.place) {
+            return drawn.place->at;
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<SpaceConfiguration> SpaceSearchSpace::sample_goal(Random& random) const {
+    std::optional<Configuration> best = drawn_at_goal(random);
+    if (!best || !model_.problem().uncertainty) {
+        return best;
+    }
+    // In worlds neither obstacles nor vehicles are where they should be. Of some samples the one that bears most of
+    // that is good in most of them.
+    constexpr int samples = 4;
+    double most = ease_at(*best, *this, model_);
+    for (int i = 1; i < samples && most < 1; ++i) {
+        const std::optional<Configuration> other = drawn_at_goal(random);
+        const double ease = other ? ease_at(*other, *this, model_) : -infinity;
+        if (ease > most) {
+            best = other;
+            most = ease;
+        }
+    }
+    return best;
 }
 
 std::optional<SpaceConfiguration> SpaceSearchSpace::nearest_at_goal(const Configuration& to, double share,

@@ -53,7 +53,7 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
     /// A configuration within the bounds with the joints as at the start.
     [[nodiscard]] Configuration sample_in_transport(Random& random) const;
 
-    /// See SearchSpace.
+    /// See SearchSpace. In problems with an uncertainty the one of some samples that suits worlds best.
     [[nodiscard]] std::optional<Configuration> sample_goal(Random& random) const;
     [[nodiscard]] std::optional<Configuration> sample_goal_near(const Configuration& configuration, double radius_m,
                                                                 Random& random) const;
@@ -99,6 +99,7 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
     [[nodiscard]] double extent_m() const noexcept;
 
  private:
+    [[nodiscard]] std::optional<Configuration> drawn_at_goal(Random& random) const;
     [[nodiscard]] std::optional<Configuration> nearest_at_goal(const Configuration& to, double share,
                                                                bool may_have_flaws) const;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <stop_token>
+#include <utility>
 
 #include "../support/same_bytes.hpp"
 #include "../support/test_problem.hpp"
@@ -168,15 +169,17 @@ TEST_CASE("a tour in which the way to one goal takes longer than one has patienc
     problem.planner.time_limit_s = 60;
     const planning::PlannerModel model{problem.planner.variant, make_flight_model(problem), nullptr};
     const SolveOptions options;
-    for (const double patience_s : {7.0, 1000.0}) {
-        CAPTURE(patience_s);
+    constexpr double short_s = 1e-3, with_long_check_s = 8;  // a check counts no longer than the search
+    for (const auto& [patience_s, search_s] :
+         {std::pair(7.0, short_s), std::pair(7.0, with_long_check_s), std::pair(1000.0, short_s)}) {
+        CAPTURE(patience_s, search_s);
         planning::SequenceEffort effort;
         effort.patience_s = patience_s;
         planning::GoalSequence sequence(problem, model, options, effort, 0);
         std::size_t to_second = 0;
         while (const auto part = sequence.next()) {
             planning::SearchResult result;
-            result.record.wall_s = 1e-3;
+            result.record.wall_s = search_s;
             const bool is_second = part->before->goals.size() == 1;
             to_second += is_second ? 1 : 0;
             if (!is_second) {

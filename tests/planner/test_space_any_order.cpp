@@ -138,6 +138,22 @@ TEST_CASE("an energy budget is kept in space: targets for which it is not enough
     CHECK(none.order->left_out.size() == 4);
 }
 
+TEST_CASE("a first flight through many targets in space has enough iterations for each leg") {
+    SpaceProblem problem = line_of_targets();
+    problem.goals.clear();
+    for (int i = 0; i < 16; ++i) {
+        problem.goals.push_back(place(-2.5 + 0.3 * i, i % 2 == 0 ? -2 : -1.5, 3));
+    }
+    problem.return_to = place(-3, -2, 3);
+    problem.planner.max_iterations = 480;
+    const SpaceSearchResult found = solved(problem);
+    REQUIRE(found.status == Status::solved);
+    CHECK(found.order->visits.size() == 16);
+    // The flight in the order that looks best was found at once: there is none before the comparison otherwise.
+    REQUIRE_FALSE(found.planning.improvements.empty());
+    CHECK(found.planning.improvements.front().iteration <= 17 * 24);
+}
+
 TEST_CASE("a target in a closed box in space is left out, and the flight to the others is not called solved") {
     SpaceProblem problem = line_of_targets();
     const auto wall = [&](const char* name, Vector3 size_m, Vector3 center_m) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/space_solve.hpp"
 #include "downwash/problems/algorithms.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
@@ -261,4 +262,47 @@ TEST_CASE("OMPL's planners plan in space, twice with the same bytes, and their p
     problem.planner.algorithm = "sst";
     REQUIRE(space_planning_errors(problem).size() == 1);
     CHECK(space_planning_errors(problem)[0].key == "motion.yaw");
+}
+
+TEST_CASE("a search in space that comes no nearer to its goal is taken for a dead end, and each gets some iterations") {
+    SpaceProblem problem = read("girder_survey");
+    problem.obstacles.clear();
+    problem.aero.enabled = false;
+    problem.in_any_order = false;
+    problem.return_to.reset();
+    problem.energy_budget_j.reset();
+    problem.goals = {place(-2, -2, 3), place(-1, -2, 3), place(0, -2, 3)};
+    problem.planner.variant = Variant::mp_arm;
+    problem.planner.max_iterations = 150;
+    problem.planner.time_limit_s.reset();
+    const planning::PlannerModelOf<planning::Space> model(problem.planner.variant,
+                                                          std::make_shared<const SpaceProblemModel>(problem), nullptr);
+    SpaceSolveOptions options;
+    options.stop_at_first_solution = true;
+    planning::GoalSequenceOf<planning::Space> sequence(problem, model, options, {}, 0);
+    enum class Comes { there, nearer, nowhere };
+    const std::vector<Comes> script{Comes::there, Comes::nowhere, Comes::there, Comes::there, Comes::nearer};
+    std::vector<std::size_t> goals;
+    while (const auto part = sequence.next()) {
+        const Comes comes = goals.size() < script.size() ? script[goals.size()] : Comes::there;
+        goals.push_back(part->before->goals.size());
+        CHECK(part->problem.planner.max_iterations.value() >= 24);  // a twelfth of all would be 13
+        planning::SearchResultOf<planning::Space> result;
+        result.record.iterations = comes == Comes::there ? 4 : 1;
+        if (comes != Comes::nowhere) {
+            const SpaceConfiguration from =
+                configuration_of(part->before->plan.reference.empty() ? reference_at(problem.start)
+                                                                      : part->before->plan.reference.back().point);
+            SpaceConfiguration to = from;
+            to[0] += 1;
+            result.found.plan = SpacePlan{
+                {{0, at_rest(from)}, {500, at_rest(to)}}, 1 / problem.robot.controller.rate_hz, problem.robot.joints()};
+            result.found.cost = 1;
+            result.found.status = comes == Comes::there ? Status::solved : Status::approximate;
+        }
+        sequence.add(std::move(result));
+    }
+    // Back to the first part after the dead end; at first not after a search that only took too long.
+    CHECK(goals == std::vector<std::size_t>{0, 1, 0, 1, 2, 2});
+    CHECK(std::move(sequence).result().found.status == Status::solved);
 }

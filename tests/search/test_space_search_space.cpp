@@ -102,6 +102,73 @@ TEST_CASE("samples in space keep bounds and limits, and those at a goal meet it 
     CHECK(f.space.rejection_at(in_box) == Rejection::arm_limits);
 }
 
+TEST_CASE("with an uncertainty samples at a goal come from its middle and, where that is not free, from farther out") {
+    for (const bool is_blocked : {false, true}) {
+        CAPTURE(is_blocked);
+        SpaceProblem problem = box_problem();
+        problem.uncertainty.emplace();
+        SpaceConfigurationGoal place;
+        place.x_m = 1;
+        place.y_m = 1;
+        place.z_m = 1.5;
+        place.tolerance_m = 0.6;
+        problem.goals.front().kind = place;
+        if (is_blocked) {  // the multirotor has to be more than half of the tolerance away
+            Obstacle ball;
+            ball.name = "ball";
+            ball.shape = Sphere{0.25};
+            ball.center_world_m = {1, 1, 1.5};
+            problem.obstacles.push_back(ball);
+        }
+        const SpaceProblemModel model(problem);
+        const planning::SearchTaskOf<planning::Space> task(problem, model, nullptr);
+        planning::Random random(3);
+        int found = 0, outer = 0;
+        for (int i = 0; i < 40; ++i) {
+            if (const std::optional<SpaceConfiguration> at = task.space.sample_goal(random)) {
+                ++found;
+                CHECK(task.space.is_valid(*at));
+                CHECK(task.space.is_near_goal(*at));
+                outer += task.space.error(*at).used_share > 0.5 ? 1 : 0;
+            }
+        }
+        CHECK(found >= 38);
+        CHECK(outer == (is_blocked ? found : 0));
+    }
+}
+
+TEST_CASE("with an uncertainty samples at a goal beside a wall keep more room than without") {
+    const auto mean_clearance_m = [](bool is_uncertain) {
+        SpaceProblem problem = box_problem();
+        Obstacle wall;
+        wall.name = "wall";
+        wall.shape = Box{{4, 0.1, 3}};
+        wall.center_world_m = {0, 1.15, 1.5};
+        problem.obstacles.push_back(wall);
+        if (is_uncertain) {
+            problem.uncertainty.emplace();
+        }
+        SpaceEndEffectorGoal tip;
+        tip.position_m = {1, 0.9, 1.5};
+        tip.tolerance_m = 0.15;
+        problem.goals.front().kind = tip;
+        const SpaceProblemModel model(problem);
+        const planning::SearchTaskOf<planning::Space> task(problem, model, nullptr);
+        planning::Random random(3);
+        double sum_m = 0;
+        int found = 0;
+        for (int i = 0; i < 200; ++i) {
+            if (const std::optional<SpaceConfiguration> at = task.space.sample_goal(random)) {
+                sum_m += model.collisions().clearance_m(level_at(*at));
+                ++found;
+            }
+        }
+        REQUIRE(found > 150);
+        return sum_m / found;
+    };
+    CHECK(mean_clearance_m(true) > 1.2 * mean_clearance_m(false));
+}
+
 TEST_CASE("no way to a goal in space is estimated to cost more than it does") {
     Fixture f;
     const planning::FreeAirCostOf<planning::Space> cost(f.task);
