@@ -17,6 +17,13 @@
 namespace downwash::planning {
 namespace {
 
+/// What each leg of the first flight gets at least where iterations are limited: of fewer nobody learns whether there
+/// is a way. In the plane every share counts, however small.
+template <class Family>
+constexpr std::uint64_t min_iterations_of_leg = 0;
+template <>
+constexpr std::uint64_t min_iterations_of_leg<Space> = 24;
+
 template <class Family>
 class AnyOrder {
  public:
@@ -120,7 +127,7 @@ void AnyOrder<Family>::search() {
     const PlaceOrder likely = comparison_.likely();
     is_thrifty_ = is_limited() && !(is_timed() && has_energy_to_spare(likely));
     if (!is_thrifty_ && is_order(likely)) {
-        const std::uint64_t least = min_iterations_of_part<Family> * (likely.places.size() + 1);
+        const std::uint64_t least = min_iterations_of_leg<Family> * (likely.places.size() + 1);
         const SearchBudget first = left_.part(share_of_first).at_least_iterations(least).at_most(left_);
         static_cast<void>(attempt(likely, is_timed() ? left_ : first, true));
     }

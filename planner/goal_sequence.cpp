@@ -131,11 +131,7 @@ auto GoalSequenceOf<Family>::budget_of(std::size_t part) const -> SearchBudget {
     // Where energy is limited it is not the first plan of a part that counts, but a cheap one.
     const double first_share = (is_thrifty() ? 0.6 : 0.25) / static_cast<double>(goals_.size());
     const int doublings = static_cast<int>(std::min(given_up_[part], 30U));
-    return whole_.part(first_share)
-        .within_s(longest_first_s)
-        .at_least_iterations(min_iterations_of_part<Family>)
-        .part(std::ldexp(1.0, doublings))
-        .at_most(whole_);
+    return whole_.part(first_share).within_s(longest_first_s).part(std::ldexp(1.0, doublings)).at_most(whole_);
 }
 
 /// Goes back to search the way to some goal anew. False if there is no time for it.

@@ -15,13 +15,6 @@
 
 namespace downwash::planning {
 
-/// What a search for the way to one of several goals takes at least where iterations are limited: of fewer nobody
-/// learns whether there is a way. Of 0 every share counts, however small.
-template <class Family>
-inline constexpr std::uint64_t min_iterations_of_part = 0;
-template <>
-inline constexpr std::uint64_t min_iterations_of_part<Space> = 24;
-
 /// How a sequence of searches uses its limits.
 struct SequenceEffort {
     double min_round = 0;  ///< share of the limits that a round after the first takes at least

@@ -264,7 +264,7 @@ TEST_CASE("OMPL's planners plan in space, twice with the same bytes, and their p
     CHECK(space_planning_errors(problem)[0].key == "motion.yaw");
 }
 
-TEST_CASE("a search in space that comes no nearer to its goal is taken for a dead end, and each gets some iterations") {
+TEST_CASE("a search in space that comes no nearer to its goal is taken for a dead end") {
     SpaceProblem problem = read("girder_survey");
     problem.obstacles.clear();
     problem.aero.enabled = false;
@@ -286,7 +286,6 @@ TEST_CASE("a search in space that comes no nearer to its goal is taken for a dea
     while (const auto part = sequence.next()) {
         const Comes comes = goals.size() < script.size() ? script[goals.size()] : Comes::there;
         goals.push_back(part->before->goals.size());
-        CHECK(part->problem.planner.max_iterations.value() >= 24);  // a twelfth of all would be 13
         planning::SearchResultOf<planning::Space> result;
         result.record.iterations = comes == Comes::there ? 4 : 1;
         if (comes != Comes::nowhere) {
