@@ -36,17 +36,16 @@ class QuietMujoco {
 
 using Model = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
 
-/// The number behind a word of a message: 12 in "line 12, column 4". 1 without one.
-int number_after(const std::string& message, const std::string& word) {
-    const std::size_t at = message.find(word + " ");
+/// The number behind a word of a message: 12 in "line 12, column 4" and in "line = 12". 1 without one.
+int number_after(const std::string& message, std::string_view word) {
+    const std::size_t at = message.find(word);
     if (at == std::string::npos) {
         return 1;
     }
-    int number = 0;
-    for (std::size_t i = at + word.size() + 1; i < message.size() && message[i] >= '0' && message[i] <= '9'; ++i) {
-        number = std::min(10 * number + (message[i] - '0'), 100'000'000);
-    }
-    return std::max(number, 1);
+    std::string_view rest = std::string_view(message).substr(at + word.size());
+    rest.remove_prefix(std::min(rest.find_first_not_of(" ="), rest.size()));
+    const std::string_view digits = rest.substr(0, rest.find_first_not_of("0123456789"));
+    return std::max(parse_number<int>(digits).value_or(1), 1);
 }
 
 Model compiled(const fs::path& file, Findings& findings) {

@@ -105,7 +105,8 @@ TEST_CASE("a broken MJCF gets a message with its element and a remedy") {
                Contains("joint 'shoulder' is slide") && Contains("--freeze shoulder=M"));
     CHECK_THAT(mjcf_errors_of({{" forcelimited=\"true\" forcerange=\"-3 3\"", ""}}),
                Contains("joint 'shoulder' has no torque"));
-    CHECK_THAT(mjcf_errors_of({{"mass=\"0.15\"", "mass=\"0\""}}), Contains("MuJoCo does not compile this model"));
+    CHECK_THAT(mjcf_errors_of({{"mass=\"0.15\"", "mass=\"0\""}}),
+               Contains("robot.xml:18:1: MuJoCo does not compile this model") && Contains("arm"));
     CHECK_THAT(mjcf_errors_of({{"diaginertia=\"0.0003 0.0009 0.001\"", "diaginertia=\"0.0003 0.0009 0.01\""}}),
                Contains("MuJoCo does not compile this model") && Contains("nertia"));
     CHECK_THAT(mjcf_errors_of({{"<geom name=\"cells\"", "<geom type=\"mesh\" mesh=\"m\"/><geom name=\"cells\""}}),
