@@ -63,13 +63,7 @@ std::vector<KeyError> design(Robot& robot, const SpaceBandwidths& bandwidths, co
 
 std::vector<KeyError> design(SpaceRobot& robot, const SpaceBandwidths& bandwidths,
                              const std::optional<std::string>& law) {
-    const bool is_cascade = law ? *law == Px4Cascade::name : std::holds_alternative<Px4Cascade>(robot.controller.law);
-    if (is_cascade) {
-        robot.controller.law = cascade_gains_for(robot.plant.time_constant_s, bandwidths);
-    } else {
-        robot.controller.law = designed_inversion(robot, bandwidths);
-    }
-    round_gains(space_robot_parameters(), robot);
+    design_controller(robot, bandwidths, law);
     return {};
 }
 
@@ -96,6 +90,16 @@ auto read(const ParameterTable<Model>& table, const std::filesystem::path& file,
 }
 
 }  // namespace
+
+void design_controller(SpaceRobot& robot, const SpaceBandwidths& bandwidths, const std::optional<std::string>& law) {
+    const bool is_cascade = law ? *law == Px4Cascade::name : std::holds_alternative<Px4Cascade>(robot.controller.law);
+    if (is_cascade) {
+        robot.controller.law = cascade_gains_for(robot.plant.time_constant_s, bandwidths);
+    } else {
+        robot.controller.law = designed_inversion(robot, bandwidths);
+    }
+    round_gains(space_robot_parameters(), robot);
+}
 
 AnyRobot read_robot_for_design(const std::filesystem::path& file, const SpaceBandwidths& bandwidths,
                                const std::optional<std::string>& law) {

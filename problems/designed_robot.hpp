@@ -30,6 +30,11 @@ using AnyRobot = std::variant<Robot, SpaceRobot>;
                                                              const SpaceBandwidths& bandwidths,
                                                              const std::optional<std::string>& law = {});
 
+/// Gives a robot in space gains for bandwidths, rounded to four digits. Type, rate and delay are kept.
+/// @param law one of designed_laws; empty: that of the robot   @pre space_robot_errors(robot) is empty
+DOWNWASH_EXPORT void design_controller(SpaceRobot& robot, const SpaceBandwidths& bandwidths,
+                                       const std::optional<std::string>& law = {});
+
 /// The controller of a robot as its file has it: "controller:" and what is below.
 [[nodiscard]] DOWNWASH_EXPORT std::string controller_yaml(const AnyRobot& robot);
 

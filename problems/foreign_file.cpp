@@ -52,7 +52,9 @@ std::string foreign_file_text(const std::filesystem::path& file, std::string_vie
             return "is XML: expected YAML";
         }
         return std::string("is a robot in ") + (is_robot ? "URDF" : "SDF") + ": expected a robot file in YAML (" +
-               std::string(urdf_keys) + "); docs/robot_files.md has an example";
+               std::string(urdf_keys) +
+               "); `downwash robot import FILE -o robot.yaml` makes one in space, and docs/robot_files.md has an "
+               "example";
     }
     if (has_ending(file, tables) || (std::ranges::any_of(line, is_letter) && line.find(':') == std::string_view::npos &&
                                      line.find_first_of(",;\t") != std::string_view::npos)) {

@@ -10,8 +10,10 @@ namespace downwash {
 namespace {
 
 constexpr std::string_view of_urdf =
-    "Downwash reads no URDF and no SDF: a robot file is YAML, with one arm that turns about one joint. What becomes of "
-    "the "
+    "`downwash robot import FILE -o robot.yaml` makes a robot file in space from a URDF, SDF or MJCF "
+    "(docs/robot_files.md). For a "
+    "robot "
+    "in a vertical plane, with one arm that turns about one joint, you write the file yourself. What becomes of the "
     "tags:\n"
     "  <mass> of the base and all that is fixed to it    multirotor.mass_kg\n"
     "  <inertia iyy> of these                            multirotor.pitch_inertia_kg_m2 (see `downwash explain "

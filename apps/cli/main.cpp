@@ -5,6 +5,7 @@
 #include "downwash/cli/export_command.hpp"
 #include "downwash/cli/fit_commands.hpp"
 #include "downwash/cli/program.hpp"
+#include "downwash/cli/robot_commands.hpp"
 #include "downwash/cli/study_commands.hpp"
 #include "downwash/cli/validate_command.hpp"
 
@@ -36,6 +37,7 @@ void add_all(Command program, Action& action) {
     add_study(program, action, {});
     add_report(program, action);
     add_export(program, action, nullptr);
+    add_robot_import(add_robot_group(program), action, nullptr);
     add_margins(program, action);
     add_planners(program, action);
     add_manual(program, action);

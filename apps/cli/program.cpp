@@ -46,6 +46,7 @@ constexpr std::array parts{
     Part{"aeromap", "libceres-dev"},
     Part{"bench", "libsqlite3-dev"},
     Part{"export", "libgeographiclib-dev"},
+    Part{"robot", "liburdfdom-dev, libsdformat-dev, libmujoco-dev and libpugixml-dev"},
     Part{"study", "libsqlite3-dev"},
     Part{"validate", ""},
 };
@@ -142,7 +143,7 @@ ExitCode checked_output(ExitCode code) {
         "this command is in the program downwash-{}, which is not in {}: `./dev build` builds it, as does `cmake "
         "--build`{}",
         name, program.parent_path().string(),
-        part->packages.empty() ? "" : " where " + std::string(part->packages) + " is installed");
+        part->packages.empty() ? "" : " with " + std::string(part->packages) + " installed");
 }
 
 ExitCode run(std::span<char*> words, void (*add_commands)(Command program, Action& action)) {

@@ -102,7 +102,8 @@ TEST_CASE("Keys are explained from the table that reads them") {
     CHECK_THAT(work.succeed("explain inertia").out, Contains("robot.arm.inertia_kg_m2") &&
                                                         Contains("robot.multirotor.pitch_inertia_kg_m2") &&
                                                         Contains("parallel-axis rule"));
-    CHECK_THAT(work.succeed("explain urdf").out, StartsWith("Downwash reads no URDF") && Contains("arm.limits_deg"));
+    CHECK_THAT(work.succeed("explain urdf").out,
+               StartsWith("`downwash robot import FILE -o robot.yaml` makes") && Contains("arm.limits_deg"));
     CHECK_THAT(work.succeed("explain thrust_stand").out, Contains("rotors.power_coefficient_w_n1p5"));
     CHECK_THAT(work.succeed("explain y_m").out,
                Contains("No key is called 'y_m': ") && Contains("vertical plane") && !Contains("safety_margin_m"));

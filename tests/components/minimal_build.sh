@@ -12,14 +12,14 @@ trap 'rm -rf "$build"' EXIT
 
 # What optional components look for, hidden as if it were not installed.
 hidden=()
-for package in ZLIB Ceres GeographicLib fmt SQLite3 CLI11 spdlog; do
+for package in ZLIB Ceres GeographicLib URDFDOM pugixml fmt SQLite3 CLI11 spdlog; do
     hidden+=("-DCMAKE_DISABLE_FIND_PACKAGE_$package=ON")
 done
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "${hidden[@]}" >"$build/log" 2>&1 || {
     cat "$build/log"
     exit 1
 }
-for component in FITTING:libceres-dev EXPORTS:libgeographiclib-dev REPORT:libfmt-dev \
+for component in FITTING:libceres-dev EXPORTS:libgeographiclib-dev ROBOT_IMPORT:liburdfdom-dev REPORT:libfmt-dev \
     CAMPAIGNS:libsqlite3-dev CLI:libcli11-dev; do
     grep -q "^-- Left out: .*Debian packages: .*${component#*:}" "$build/log" || {
         echo "CMake does not say that ${component%:*} is left out without ${component#*:}:"
@@ -29,7 +29,7 @@ for component in FITTING:libceres-dev EXPORTS:libgeographiclib-dev REPORT:libfmt
 done
 # With the packages of `./dev run` the program is built, without the optional ones.
 cmake -S "$root" -B "$build/run" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-    -DCMAKE_DISABLE_FIND_PACKAGE_{Ceres,GeographicLib,SQLite3}=ON >"$build/log" 2>&1 || {
+    -DCMAKE_DISABLE_FIND_PACKAGE_{Ceres,GeographicLib,SQLite3,URDFDOM}=ON >"$build/log" 2>&1 || {
     cat "$build/log"
     exit 1
 }
