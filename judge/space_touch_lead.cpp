@@ -80,7 +80,7 @@ SpacePoint SpaceTouchLead::leant() const {
         }
     }
     const auto tip_m = [&](const SpaceCoordinates& at) {
-        const BodyMotion& last = bodies_at(nominal_, at).back();
+        const BodyMotion last = bodies_at(nominal_, at).back();
         return Vector3d(last.position_m + last.attitude * nominal_.end_effector_m);
     };
     const Vector3d moved_m = tip_m(level) - tip_m(leant);

@@ -7,6 +7,7 @@
 #include <string>
 #include <variant>
 
+#include "downwash/base/direction.hpp"
 #include "downwash/problems/number_text.hpp"
 #include "downwash/problems/space_goal_parameters.hpp"
 #include "downwash/scene/obstacle_placement.hpp"
@@ -16,10 +17,6 @@ namespace downwash {
 namespace {
 
 using problems::rounded;
-
-double length_of(const Vector3& v) {
-    return std::sqrt(dot(v, v));
-}
 
 /// How deep a point in the frame of a shape is below its surface [m]; below 0 outside. Surfaces of files count as
 /// hollow.

@@ -88,13 +88,13 @@ struct Drawing {
 
     [[nodiscard]] Found operator()(const SpaceCameraGoal& goal) const {
         const std::optional<Heading> heading =
-            goal.direction ? drawn_at(own.view_of(goal, own.arm.tool(), share)) : any_heading();
+            goal.direction ? drawn_at(Impl::view_of(goal, own.arm.tool(), share)) : any_heading();
         const double off = share * random.uniform(-1, 1);
         if (!heading) {
             return std::nullopt;
         }
         const Vector3 line =
-            own.line_of(goal, yawed(heading->yaw_rad, own.arm.outward(heading->joints, own.arm.tool())), share);
+            Impl::line_of(goal, yawed(heading->yaw_rad, own.arm.outward(heading->joints, own.arm.tool())), share);
         const double away_m = 0.5 * ((1 - off) * goal.nearest_m + (1 + off) * goal.farthest_m);
         return own.placed(*heading, goal.target_m - away_m * line);
     }
@@ -102,8 +102,8 @@ struct Drawing {
     [[nodiscard]] Found operator()(const SpaceConfigurationGoal& goal) const {
         const Heading any = any_heading();
         SpaceConfiguration at{};
-        const std::array<bool, 3> is_given = own.given(goal);
-        const Vector3 beside_m = own.place_of(goal) + in_ball(random, share * goal.tolerance_m, is_given);
+        const std::array<bool, 3> is_given = Impl::given(goal);
+        const Vector3 beside_m = Impl::place_of(goal) + in_ball(random, share * goal.tolerance_m, is_given);
         for (std::size_t i = 0; i < 3; ++i) {
             const double any_m = random.uniform(own.bounds.low_m[i], own.bounds.high_m[i]);
             at[i] = is_given[i] ? beside_m[i] : any_m;

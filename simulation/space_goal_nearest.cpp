@@ -119,10 +119,10 @@ struct NearPlaces {
         };
         const auto as_it_points = [&](const Heading& heading) {
             place(heading,
-                  own.line_of(goal, yawed(heading.yaw_rad, own.arm.outward(heading.joints, own.arm.tool())), share));
+                  Impl::line_of(goal, yawed(heading.yaw_rad, own.arm.outward(heading.joints, own.arm.tool())), share));
         };
         if (goal.direction) {
-            for_each_heading(own.view_of(goal, own.arm.tool(), share), as_it_points);
+            for_each_heading(Impl::view_of(goal, own.arm.tool(), share), as_it_points);
         } else {
             as_it_points(start);
         }
@@ -130,7 +130,7 @@ struct NearPlaces {
         const Vector3 now = goal.target_m - (Vector3{from[0], from[1], from[2]} +
                                              yawed(start.yaw_rad, own.arm.end_effector_m(start.joints)));
         if (length_of(now) > 0) {
-            const Vector3 line = own.line_of(goal, unit(now), share);
+            const Vector3 line = Impl::line_of(goal, unit(now), share);
             for_each_heading({own.arm.tool(), line, share * goal.aim_tolerance_rad},
                              [&](const Heading& heading) { place(heading, line); });
         }
@@ -138,21 +138,21 @@ struct NearPlaces {
 
     void operator()(const SpaceConfigurationGoal& goal) const {
         SpaceConfiguration at = from;
-        const std::array<bool, 3> is_given = own.given(goal);
+        const std::array<bool, 3> is_given = Impl::given(goal);
         Vector3 off_m{};
         for (std::size_t i = 0; i < 3; ++i) {
-            off_m[i] = is_given[i] ? from[i] - own.place_of(goal)[i] : 0;
+            off_m[i] = is_given[i] ? from[i] - Impl::place_of(goal)[i] : 0;
         }
         const double away_m = length_of(off_m), radius_m = share * goal.tolerance_m;
         for (std::size_t i = 0; i < 3; ++i) {
-            at[i] = is_given[i] ? own.place_of(goal)[i] + (away_m > radius_m ? radius_m / away_m : 1) * off_m[i]
+            at[i] = is_given[i] ? Impl::place_of(goal)[i] + (away_m > radius_m ? radius_m / away_m : 1) * off_m[i]
                                 : std::clamp(from[i], own.bounds.low_m[i], own.bounds.high_m[i]);
         }
         const double room_rad = share * goal.tolerance_rad;
         if (goal.yaw_rad) {
             at[space::yaw] = YawRange{*goal.yaw_rad, room_rad}.nearest_to(from[space::yaw]);
         }
-        const JointAngles joints = within_limits(own, own.heading_of(from).joints);
+        const JointAngles joints = within_limits(own, Impl::heading_of(from).joints);
         for (std::size_t i = 0; i < own.arm.joints(); ++i) {
             const double now_rad = joints[i];
             at[space::first_joint + i] =
@@ -214,7 +214,7 @@ std::optional<SpaceGoalPlace> SpaceGoalSampler::nearest(const SpaceConfiguration
                 least = away;
             }
         };
-        std::visit(NearPlaces{own, one, to, start, share, consider}, one.goal.kind);
+        std::visit(NearPlaces<decltype(consider)>{own, one, to, start, share, consider}, one.goal.kind);
     };
     Heading given = Impl::heading_of(to);
     given.joints = within_limits(own, given.joints);

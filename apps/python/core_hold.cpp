@@ -120,7 +120,7 @@ py::tuple hold(const CoreProblem& of, const Points& points, const std::optional<
 /// Names of the joints' columns: "joint_1" and what follows.
 void add_joints(std::vector<std::string>& names, int joints, const std::string& before, const std::string& after) {
     for (int i = 1; i <= joints; ++i) {
-        names.push_back(before + "joint_" + std::to_string(i) + after);
+        names.push_back(std::string(before).append("joint_").append(std::to_string(i)).append(after));
     }
 }
 

@@ -150,7 +150,7 @@ std::vector<SpaceBodyShape> collision_bodies(const KinematicTree& tree, const Ar
         const RigidTransform pose{chain.pose[i].rotation, chain.pose[i].position_m - origin_m};
         for (const TreeShape& shape : shapes_of(link)) {
             if (auto solid = solid_of(shape, link, pose, skips_meshes, findings)) {
-                bodies.push_back(std::move(*solid));
+                bodies.push_back(*solid);
             }
         }
     }
