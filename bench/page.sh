@@ -10,6 +10,7 @@ shift 3
 page=bench/results/$name.md
 mkdir -p bench/results
 {
+    # shellcheck disable=SC2016 # these are Markdown's
     printf '# %s\n\nCommit %s, %s, %s. Made by `bench/%s.sh`.\n\n' "$title" "$(bench/source_commit.sh)" \
         "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)" "$conditions" "$name"
     "$@"

@@ -33,7 +33,7 @@ code=0
 grep -q 'hexa_arm2.urdf:1:1: --rotors' err || fail "the error has no place: $(cat err)"
 code=0
 "$downwash" robot import "$models/hexa_arm2.urdf" -o none.yaml --freeze elbow 2>err || code=$?
-[[ $code -eq 2 ]] && grep -q 'expected JOINT=DEG' err || fail "--freeze without an angle: $(cat err)"
+{ [[ $code -eq 2 ]] && grep -q 'expected JOINT=DEG' err; } || fail "--freeze without an angle: $(cat err)"
 
 "$downwash" robot import "$models/hexa_arm2.urdf" -o one.yaml --freeze elbow=45 --name one --json >out.json
 python3 -c '
