@@ -315,7 +315,8 @@ TEST_CASE("every shipped robot in space is read as it was written") {
         std::vector<std::string> warnings;
         const SpaceRobot robot =
             read_space_robot(file, [&](const LocatedError& warning) { warnings.push_back(to_text(warning)); });
-        // The model of quadrotor_v1 has torques for themselves: rotors that give them stand at one place, which is told.
+        // The model of quadrotor_v1 has torques for themselves: rotors that give them stand at one place, which is
+        // told.
         CHECK(warnings.size() == (robot.name == "dynobench_quadrotor_v1" ? 1 : 0));
         folder.write("written.yaml", robot_yaml(robot));
         CHECK(robot_yaml(read_space_robot(folder / "written.yaml")) == robot_yaml(robot));
