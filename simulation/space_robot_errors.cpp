@@ -1,4 +1,3 @@
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -49,16 +48,7 @@ Errors shapeless_cylinders(const SpaceRobot& robot) {
     return errors;
 }
 
-/// Principal moments in rising order. @pre the matrix is symmetric
-Eigen::Vector3d principal_moments(const Matrix3& inertia) {
-    Eigen::Matrix3d m;
-    for (int row = 0; row < 3; ++row) {
-        m.row(row) = Eigen::RowVector3d(inertia[static_cast<std::size_t>(row)].data());
-    }
-    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(m, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-std::string moments_text(const Eigen::Vector3d& moments) {
+std::string moments_text(const Vector3& moments) {
     return rounded(moments[0]) + ", " + rounded(moments[1]) + " and " + rounded(moments[2]) + " kg m2";
 }
 
@@ -76,7 +66,7 @@ Errors inertia_errors(const Matrix3& inertia, const std::string& key) {
             }
         }
     }
-    const Eigen::Vector3d moments = principal_moments(inertia);
+    const Vector3 moments = principal_moments(inertia);
     if (moments[0] <= 0) {
         return {{key, "has the principal moments " + moments_text(moments) +
                           ": expected three above 0; the products of inertia are too large"}};
@@ -103,7 +93,7 @@ Errors too_large_inertia(const SpaceRobot& robot) {
         extent_m = std::max(extent_m, std::sqrt(dot(rotor.position_m, rotor.position_m)) + robot.rotor_radius_m);
     }
     const double greatest = robot.plant.multirotor.mass_kg * extent_m * extent_m;
-    const Eigen::Vector3d moments = principal_moments(robot.plant.multirotor.inertia_kg_m2);
+    const Vector3 moments = principal_moments(robot.plant.multirotor.inertia_kg_m2);
     if (moments[2] <= greatest) {
         return {};
     }

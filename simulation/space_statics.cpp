@@ -113,6 +113,16 @@ int allocation_rank(const SpacePlant& plant, bool with_yaw) {
         std::count_if(values.begin(), values.end(), [&](double value) { return value > least_share * values[0]; }));
 }
 
+Vector3 principal_moments(const Matrix3& inertia) {
+    Eigen::Matrix3d m;
+    for (int row = 0; row < 3; ++row) {
+        m.row(row) = Eigen::RowVector3d(inertia[static_cast<std::size_t>(row)].data());
+    }
+    const Eigen::Vector3d moments =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(m, Eigen::EigenvaluesOnly).eigenvalues();
+    return {moments[0], moments[1], moments[2]};
+}
+
 WorstPose worst_pose(const SpaceRobot& robot, const std::function<double(const std::vector<double>&)>& value) {
     const std::size_t joints = robot.links.size();
     WorstPose worst;

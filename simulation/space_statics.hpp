@@ -37,6 +37,9 @@ struct ArmPose {
 /// @param with_yaw without it, of thrust, roll and pitch alone: 3 at most
 [[nodiscard]] DOWNWASH_EXPORT int allocation_rank(const SpacePlant& plant, bool with_yaw);
 
+/// Principal moments of an inertia, in its unit and in rising order. @pre the matrix is symmetric
+[[nodiscard]] DOWNWASH_EXPORT Vector3 principal_moments(const Matrix3& inertia);
+
 /// The greatest value that a function of the joints takes, and where.
 struct WorstPose {
     double value = 0;

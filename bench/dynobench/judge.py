@@ -153,20 +153,26 @@ def judge(problem, states, thrusts):
     return end * STEP_S
 
 
+def report(runs, cost_s):
+    """Prints a line for each folder. The exit code: 1 if any is refused.
+    cost_s: of a folder's flight [s]; raises Refused."""
+    refused = False
+    for run in runs:
+        try:
+            print(f"{run}: accepted, {cost_s(run):.2f} s")
+        except Refused as why:
+            refused = True
+            print(f"{run}: refused: {why}")
+    return 1 if refused else 0
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("problem", help="a problem file")
     parser.add_argument("runs", nargs="+", help="folders that `downwash solve` wrote")
     given = parser.parse_args()
     problem = read_problem(given.problem)
-    refused = False
-    for run in given.runs:
-        try:
-            print(f"{run}: accepted, {judge(problem, *read_flight(run)):.2f} s")
-        except Refused as why:
-            refused = True
-            print(f"{run}: refused: {why}")
-    return 1 if refused else 0
+    return report(given.runs, lambda run: judge(problem, *read_flight(run)))
 
 
 if __name__ == "__main__":

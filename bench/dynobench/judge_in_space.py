@@ -18,7 +18,7 @@ import pathlib
 import sys
 
 import yaml
-from judge import GRAVITY_M_S2, MAX_GOAL_ERROR, MAX_STEP_ERROR, ROUNDING, STEP_S, Refused
+from judge import GRAVITY_M_S2, MAX_GOAL_ERROR, MAX_STEP_ERROR, ROUNDING, STEP_S, Refused, report
 
 MAX_SPEED_M_S = 4.0
 MAX_RATE_RAD_S = 8.0
@@ -191,14 +191,7 @@ def main():
     parser.add_argument("runs", nargs="+", help="folders that `downwash solve` wrote")
     given = parser.parse_args()
     problem = read_problem(given.problem)
-    refused = False
-    for run in given.runs:
-        try:
-            print(f"{run}: accepted, {judge(MODELS[given.model], problem, *read_flight(run)):.2f} s")
-        except Refused as why:
-            refused = True
-            print(f"{run}: refused: {why}")
-    return 1 if refused else 0
+    return report(given.runs, lambda run: judge(MODELS[given.model], problem, *read_flight(run)))
 
 
 if __name__ == "__main__":

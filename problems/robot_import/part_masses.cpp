@@ -1,11 +1,11 @@
 #include "downwash/robot_import/part_masses.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "downwash/base/text.hpp"
+#include "downwash/simulation/space_statics.hpp"
 
 namespace downwash::robot_import {
 namespace {
@@ -18,16 +18,7 @@ std::string rounded(double value) {
     return to_text(value, 4);
 }
 
-/// Principal moments in rising order.
-Eigen::Vector3d principal_moments(const Matrix3& inertia) {
-    Eigen::Matrix3d m;
-    for (int row = 0; row < 3; ++row) {
-        m.row(row) = Eigen::RowVector3d(inertia[static_cast<std::size_t>(row)].data());
-    }
-    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(m, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-std::string moments_text(const Eigen::Vector3d& moments) {
+std::string moments_text(const Vector3& moments) {
     return rounded(moments[0]) + ", " + rounded(moments[1]) + " and " + rounded(moments[2]) + " kg m2";
 }
 
@@ -70,9 +61,9 @@ void check_lengths(const TreeLink& link, Findings& findings) {
 /// An inertia against the mass and the shapes that it is of.
 void check_inertia(const TreeLink& link, Findings& findings) {
     const TreeInertial& inertial = *link.inertial;
-    const Eigen::Vector3d moments = principal_moments(inertial.inertia_kg_m2);
+    const Vector3 moments = principal_moments(inertial.inertia_kg_m2);
     constexpr double rounding = 1e-6;  // published inertias have few digits
-    if (!moments.allFinite() || moments[0] < -rounding * std::abs(moments[2])) {
+    if (!is_finite(moments) || moments[0] < -rounding * std::abs(moments[2])) {
         findings.error(inertial.place, named(link) + " has the principal moments " + moments_text(moments) +
                                            ": expected none below 0; the products of inertia are too large");
         return;
