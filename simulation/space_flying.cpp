@@ -121,9 +121,16 @@ bool SpaceFlying::touches_anything(const SpaceMotion& motion) {
 }
 
 /// Whether a pose is so far from the last one at which collisions were looked for that there may be one. Where
-/// clearances are measured there is no need to know.
+/// clearances are measured there is no need to know. A vehicle that stays at a surface is looked at several times before
+/// its free motion is found again: to find it takes longer than to look.
 bool SpaceFlying::may_touch(const SpacePose& pose) {
+    constexpr double at_surface_m = 0.005;
+    constexpr int looks_at_surface = 16;
     if (settings_.measures_clearance) {
+        return true;
+    }
+    if (looks_left_ > 0) {
+        --looks_left_;
         return true;
     }
     const SpaceChecker& checker = *settings_.checker;
@@ -136,6 +143,7 @@ bool SpaceFlying::may_touch(const SpacePose& pose) {
     free_ = checker.free_motion(pose, 0, max_free_motion_m);
     free_.to_obstacles_m -= free_motion_error_m(checker.kind());
     free_.to_itself_m -= free_motion_error_m(checker.kind());
+    looks_left_ = free_.to_obstacles_m < at_surface_m ? looks_at_surface : 0;
     return true;
 }
 

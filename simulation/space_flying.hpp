@@ -64,6 +64,7 @@ class SpaceFlying {
     std::optional<SpacePose> before_;          ///< as obstacles saw the last state
     SpacePose looked_at_;                      ///< where collisions were looked for last, and
     SpaceChecker::FreeMotion free_;            ///< how far from there none can be
+    int looks_left_ = 0;                       ///< collisions are looked for so often before that is asked again
     const SpaceTouchFlight* touch_ = nullptr;  ///< obstacles see the vehicle a little off its surface
 };
 
