@@ -17,7 +17,7 @@ constexpr std::string_view failed_certificate = "certificate";
 
 template <class Family>
 typename Family::Obstruction obstruction_of(const Certificate& certificate, const typename Family::Plan& plan) {
-    return {std::string(has_failed(certificate) ? failed_certificate : unfinished_certificate), end_of(plan), 0};
+    return {std::string(certificate.is_refused ? failed_certificate : unfinished_certificate), end_of(plan), 0};
 }
 
 /// Whether a search after a course is for the way to the last goal of a problem.
@@ -69,7 +69,7 @@ bool CandidateCheckOf<Family>::counts(const Plan& plan, double cost) {
     }
     known_at_s_ = clock_.seconds();
     if (certifies() && !is_certified(plan, cost)) {
-        ++(has_failed(*certificate_) ? candidates.failed_certificate : candidates.unfinished);
+        ++(certificate_->is_refused ? candidates.failed_certificate : candidates.unfinished);
         return false;
     }
     if (!can_stop(plan)) {

@@ -1,7 +1,6 @@
 #include "downwash/planner/certificate.hpp"
 
-#include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace downwash {
 
@@ -60,13 +59,6 @@ FailureInterval failure_interval(std::uint64_t failures, std::uint64_t worlds, d
             failure_bound(failures, worlds, alpha)};
 }
 
-bool has_failed(const Certificate& certificate) noexcept {
-    const auto flights = std::accumulate(certificate.causes.begin(), certificate.causes.end(), std::uint64_t{0},
-                                         [](std::uint64_t sum, const auto& cause) { return sum + cause.second; });
-    const std::uint64_t on_earlier_parts = flights - std::min(flights, certificate.failures);
-    return std::max(certificate.failures, on_earlier_parts) > CertificateTest::most_failures;
-}
-
 CertificateTest::CertificateTest(double max_failure_probability, double confidence, std::uint64_t attempt) {
     constexpr double first_attempt = 2.0 / 3;
     constexpr double first_stage = 3.0 / 4;  // the two multiply to the half that one end of failure_interval() has
@@ -91,6 +83,26 @@ CertificateTest::CertificateTest(double max_failure_probability, double confiden
         }
         stages_[failures] = worlds;
     }
+}
+
+double CertificateTest::passing_probability(std::uint64_t failures, std::uint64_t worlds, double p) const noexcept {
+    double passed = 0;
+    double flying[most_failures + 1] = {};  // by failures: the probability of them, and not to have passed
+    if (failures <= most_failures) {
+        flying[failures] = 1;
+    }
+    for (std::uint64_t flown = worlds; flown <= stages_[most_failures]; ++flown) {
+        for (std::uint64_t k = failures; k <= most_failures; ++k) {
+            passed += flown >= stages_[k] ? std::exchange(flying[k], 0.0) : 0.0;
+        }
+        for (std::uint64_t k = most_failures; k > failures; --k) {
+            flying[k] = (1 - p) * flying[k] + p * flying[k - 1];
+        }
+        if (failures <= most_failures) {
+            flying[failures] *= 1 - p;
+        }
+    }
+    return passed;
 }
 
 }  // namespace downwash

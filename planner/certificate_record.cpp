@@ -22,8 +22,16 @@ std::uint64_t CertificateRecord::worlds_wanted() const noexcept {
     if (has_failed()) {
         return 0;
     }
-    const std::uint64_t stage = test_.stage_worlds(failures_);
+    const std::uint64_t stage = test_.stage_worlds(forgiven_ ? 0 : failures_);
     return stage > worlds() ? stage - worlds() : 0;
+}
+
+void CertificateRecord::give_up_if_hopeless() noexcept {
+    constexpr double confidence = 0.8, least_probability = 0.1;
+    if (failures_ > 0 && !forgiven_) {
+        const double low = 1 - failure_bound(worlds() - failures_, worlds(), 1 - confidence);
+        is_given_up_ = test_.passing_probability(failures_, worlds(), low) < least_probability;
+    }
 }
 
 void CertificateRecord::add(const WorldSample& sample) {
@@ -70,6 +78,7 @@ Certificate CertificateRecord::certificate(bool is_given) const {
     certificate.is_given = is_given && passes();
     certificate.worlds = worlds();
     certificate.failures = failures_;
+    certificate.is_refused = has_failed();
     certificate.max_failure_probability = max_failure_probability_;
     certificate.confidence = confidence_;
     certificate.attempts = attempt_;

@@ -109,7 +109,8 @@ SpaceProblemWorlds::SpaceProblemWorlds(const SpaceProblem& problem, const Planne
       own_(problem.goals.size()),
       search_worlds_(problem.uncertainty ? search_worlds(problem) : std::vector<SpaceWorld>()),
       searching_(problem.goals.size()),
-      screened_(problem.goals.size() + 1) {
+      screened_(problem.goals.size() + 1),
+      refused_(problem.goals.size()) {
     for (const SpaceGoal& goal : problem.goals) {
         rules_.push_back(
             std::make_unique<SpaceGoalRule>(problem.robot, model.flight->shared_scene(), std::vector<SpaceGoal>{goal}));
@@ -179,7 +180,7 @@ SearchWorldsOf<Space> SpaceProblemWorlds::for_search(const CourseOf<Space>& befo
         --known;
     }
     FlownFleetOf<Space> fleet =
-        known > 0 ? searching_[known - 1] : FlownFleetOf<Space>{{}, starts_in(search_worlds_, false)};
+        known > 0 ? searching_[known - 1] : FlownFleetOf<Space>{{}, starts_in(search_worlds_, false), {}};
     advance(fleet.vehicles, before, fleet.reference.empty() ? 0 : fleet.reference.size() - 1, search_worlds_);
     fleet.reference = before.plan.reference;
     SearchWorldsOf<Space> search = worlds_of_search<Space>(search_worlds_, fleet.vehicles);
@@ -375,6 +376,7 @@ Certificate SpaceProblemWorlds::tested(const Test& test, const StopCondition& is
             for (const WorldSample& sample : test.fly(number, worlds)) {
                 record.add(sample);
             }
+            record.give_up_if_hopeless();
         }
     } catch (const WorkStopped&) {  // it has what was flown so far
     }
@@ -399,7 +401,7 @@ const FlownFleetOf<Space>& SpaceProblemWorlds::screened(const CourseOf<Space>& c
                                                         const StopCondition& is_over) {
     FlownFleetOf<Space>& fleet = screened_[course.goals.size()];
     if (!is_flown(fleet, course.plan) || fleet.reference.size() != course.plan.reference.size()) {
-        fleet = {course.plan.reference, {}};
+        fleet = {course.plan.reference, {}, {}};
     }
     const std::uint64_t known = fleet.vehicles.size();
     std::vector<SpaceWorld> more;
@@ -414,8 +416,12 @@ const FlownFleetOf<Space>& SpaceProblemWorlds::screened(const CourseOf<Space>& c
     if (!course.goals.empty()) {
         SpacePlan flown = course.plan;
         flown.reference.pop_back();  // the hover for its last goal, which is flown again
-        static_cast<void>(fly_on(vehicles, flown, 0, course.goals.size(), first_screening + known, more, is_over));
+        for (const WorldSample& sample :
+             fly_on(vehicles, flown, 0, course.goals.size(), first_screening + known, more, is_over)) {
+            fleet.lost_on.push_back(sample.goal);
+        }
     }
+    fleet.lost_on.resize(worlds);
     fleet.vehicles.insert(fleet.vehicles.end(), vehicles.begin(), vehicles.end());
     return fleet;
 }
@@ -424,26 +430,19 @@ Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const Spac
                                        const StopCondition& is_over, const WorldCounter& counter) {
     // Until a flight has failed as a whole, a part only has to do as well as the whole must. To tell that each keeps
     // its share of the failures takes thousands of worlds, and most parts take next to nothing of it. So every flight
-    // that fails as a whole makes it harder for parts, down to that share.
+    // that fails as a whole makes it harder for parts, down to that share. Many parts begin half way to it, and none
+    // may fail at all: another way is found sooner than the failure probability of this one. Where none is better, each
+    // that was refused lets the next one fail once more.
     constexpr double first_confidence = 0.5, confidence = 0.8;
-    const bool is_first = before.attempts == 0;
-    const double weak_parts = std::min(static_cast<double>(goals()), 1 + static_cast<double>(before.attempts));
+    constexpr std::size_t many = 8;
+    const bool are_many = goals() >= many, is_first = before.attempts == 0;
+    const auto parts = static_cast<double>(goals());
+    const double weak_parts =
+        std::min(parts, (are_many ? std::sqrt(parts) : 1) * (1 + static_cast<double>(before.attempts)));
     const std::size_t visited = before.goals.size();
     const SpacePlan whole = before.plan.followed_by(part);
     const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
-    FlownFleetOf<Space> after{with_hover(whole, problem_.goals[visited], *model_.flight).reference, {}};
-    // A vehicle that was lost before is a failure of the first part after which it is missing; in worlds in which only
-    // longer flights were flown, of the last one.
-    const auto part_that_lost = [&](std::size_t world) {
-        std::size_t lost_on = 0;
-        const auto has_it = [&](const FlownFleetOf<Space>& fleet) {
-            return world >= fleet.vehicles.size() || fleet.vehicles[world].has_value();
-        };
-        while (lost_on + 1 < visited && has_it(screened_[lost_on + 1])) {
-            ++lost_on;
-        }
-        return lost_on;
-    };
+    FlownFleetOf<Space> after{with_hover(whole, problem_.goals[visited], *model_.flight).reference, {}, {}};
     const auto fly = [&](std::uint64_t number, std::span<const SpaceWorld> worlds) {
         const FlownFleetOf<Space>& fleet = screened(before, number + worlds.size(), is_over);
         const auto begin = fleet.vehicles.begin() + static_cast<std::ptrdiff_t>(number);
@@ -452,17 +451,21 @@ Certificate SpaceProblemWorlds::screen(const CourseOf<Space>& before, const Spac
             fly_on(vehicles, whole, first, visited + 1, first_screening + number, worlds, is_over);
         for (std::size_t i = 0; i < samples.size(); ++i) {
             if (!fleet.vehicles[number + i]) {
-                samples[i].goal = part_that_lost(number + i);
+                samples[i].goal = fleet.lost_on[number + i];
             }
+            after.lost_on.push_back(samples[i].goal);
         }
         after.vehicles.insert(after.vehicles.end(), vehicles.begin(), vehicles.end());
         return samples;
     };
     const double share = problem_.planner.max_failure_probability / weak_parts;
-    Certificate certificate = tested({first_screening, fly}, is_over, counter,
-                                     CertificateRecord(share, is_first ? first_confidence : confidence, 1, visited));
+    const CertificateRecord record(share, is_first ? first_confidence : confidence, 1, visited,
+                                   are_many ? std::optional(refused_[visited]) : std::nullopt);
+    Certificate certificate = tested({first_screening, fly}, is_over, counter, record);
     if (certificate.is_given) {
         screened_[visited + 1] = std::move(after);
+    } else if (certificate.is_refused) {
+        ++refused_[visited];
     }
     return certificate;
 }

@@ -95,7 +95,8 @@ class SpaceProblemWorlds {
     std::vector<SpaceWorld> search_worlds_;
     /// By the number of goals that were visited: in the worlds of the search and in the first ones of screenings.
     std::vector<FlownFleetOf<Space>> searching_, screened_;
-    StopCondition is_over_;  ///< what flights ask
+    std::vector<std::uint64_t> refused_;  ///< by goal: how often a way to it did not pass its screening
+    StopCondition is_over_;               ///< what flights ask
 };
 
 }  // namespace downwash::planning

@@ -238,7 +238,7 @@ Certificate ProblemWorlds::certify(const Plan& whole, std::uint64_t attempt, con
 const FlownFleet& ProblemWorlds::screened(const Course& course, std::uint64_t worlds, const StopCondition& is_over) {
     FlownFleet& fleet = fleets_[course.goals.size()];
     if (!is_flown(fleet, course.plan) || fleet.reference.size() != course.plan.reference.size()) {
-        fleet = {course.plan.reference, {}};
+        fleet = {course.plan.reference, {}, {}};
     }
     const std::uint64_t known = fleet.vehicles.size();
     std::vector<FlownWorld> more;
@@ -263,7 +263,7 @@ Certificate ProblemWorlds::screen(const Course& before, const Plan& part, const 
     const std::size_t visited = before.goals.size();
     const Plan whole = before.plan.followed_by(part);
     const std::size_t first = before.plan.reference.empty() ? 0 : before.plan.reference.size() - 1;
-    FlownFleet after{with_hover(whole, flights_.goals()[visited], flights_.model()).reference, {}};
+    FlownFleet after{with_hover(whole, flights_.goals()[visited], flights_.model()).reference, {}, {}};
     const auto fly = [&](std::uint64_t number, std::span<const FlownWorld> worlds) {
         const auto begin = static_cast<std::ptrdiff_t>(number);
         const FlownFleet& fleet = screened(before, number + worlds.size(), is_over);

@@ -25,6 +25,7 @@ template <class Family>
 struct FlownFleetOf {
     decltype(Family::Plan::reference) reference;  ///< flown; empty at the start
     std::vector<std::optional<typename Family::FlightState>> vehicles;
+    std::vector<std::size_t> lost_on;  ///< in space: the goal, from 0, on the way to which each missing one was lost
 };
 using FlownFleet = FlownFleetOf<Plane>;
 

@@ -121,8 +121,8 @@ bool SpaceFlying::touches_anything(const SpaceMotion& motion) {
 }
 
 /// Whether a pose is so far from the last one at which collisions were looked for that there may be one. Where
-/// clearances are measured there is no need to know. A vehicle that stays at a surface is looked at several times before
-/// its free motion is found again: to find it takes longer than to look.
+/// clearances are measured there is no need to know. A vehicle that stays at a surface is looked at several times
+/// before its free motion is found again: to find it takes longer than to look.
 bool SpaceFlying::may_touch(const SpacePose& pose) {
     constexpr double at_surface_m = 0.005;
     constexpr int looks_at_surface = 16;

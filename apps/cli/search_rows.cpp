@@ -200,7 +200,7 @@ std::string verdict_on(const Solution& solution, bool aero) {
     if (solution.certificate && !solution.certificate->is_given) {
         const Certificate& certificate = *solution.certificate;
         const bool is_of_part = is_about_part(solution);
-        if (!has_failed(certificate)) {
+        if (!certificate.is_refused) {
             const std::string what =
                 is_of_part
                     ? fmt::format("A way to {} was found, but the search ended before it was flown in enough worlds",

@@ -284,7 +284,7 @@ TEST_CASE("a search for targets that the time ends in the middle of worlds says 
     REQUIRE(solution.certificate);
     CHECK_FALSE(solution.certificate->is_given);
     CHECK(solution.certificate->worlds > 0);
-    CHECK_FALSE(has_failed(*solution.certificate));
+    CHECK_FALSE(solution.certificate->is_refused);
     CHECK(solution.planning.candidates.unfinished > 0);
     CHECK(solution.planning.rejected.at("direct_flight") == solution.planning.candidates.rejected());
     CHECK(solution.planning.candidates.failed_certificate == 0);

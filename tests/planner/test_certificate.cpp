@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <optional>
 #include <stop_token>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -12,6 +14,7 @@
 #include "../support/test_problem.hpp"
 #include "downwash/base/quantile.hpp"
 #include "downwash/planner/certificate.hpp"
+#include "downwash/planner/certificate_record.hpp"
 #include "downwash/planner/goal_search.hpp"
 #include "downwash/planner/goal_sequence.hpp"
 #include "downwash/planner/remedies.hpp"
@@ -97,6 +100,55 @@ TEST_CASE("Stages are the least numbers of worlds that are enough, for rare fail
     CHECK(sum == Approx(0.05 * 2 / 3));
     const CertificateTest rare(1e-4, 0.999, 50);
     CHECK(rare.stage_worlds(0) == Approx(std::log(3 * 50 * 49 / (0.75 * 0.001)) / 1e-4).epsilon(1e-3));
+}
+
+TEST_CASE("The probability to pass is the share of simulated tests that do") {
+    const CertificateTest test(0.01, 0.95, 2);
+    test::Random random(11);
+    for (const auto& [failures, worlds, p] : std::vector<std::tuple<std::uint64_t, std::uint64_t, double>>{
+             {0, 0, 0.003}, {1, 100, 0.002}, {2, 400, 0.004}, {3, 1500, 0.005}}) {
+        constexpr int trials = 4000;
+        int passed = 0;
+        for (int i = 0; i < trials; ++i) {
+            std::uint64_t failed = failures;
+            std::uint64_t flown = worlds;
+            while (failed <= CertificateTest::most_failures && flown < test.stage_worlds(failed)) {
+                failed += random.uniform(0, 1) < p ? 1 : 0;
+                ++flown;
+            }
+            passed += failed <= CertificateTest::most_failures ? 1 : 0;
+        }
+        const double probability = test.passing_probability(failures, worlds, p);
+        CAPTURE(failures, probability);
+        CHECK(probability > 0.05);
+        CHECK(probability < 0.95);
+        const double deviation = std::sqrt(probability * (1 - probability) / trials);
+        CHECK(static_cast<double>(passed) / trials == Approx(probability).margin(4 * deviation));
+    }
+    CHECK(test.passing_probability(0, 0, 0) == 1);
+    CHECK(test.passing_probability(3, test.stage_worlds(3), 0.5) == 1);
+    CHECK(test.passing_probability(CertificateTest::most_failures + 1, 10, 0) == 0);
+}
+
+TEST_CASE("A test is given up once the plan is unlikely to pass, and not for the failures of chance") {
+    const auto is_refused = [](std::uint64_t failures, std::uint64_t worlds,
+                               std::optional<std::uint64_t> forgiven = {}) {
+        planning::CertificateRecord record(0.01, 0.95, 1, 0, forgiven);
+        for (std::uint64_t world = 0; world < worlds; ++world) {
+            record.add({world, world < failures ? Outcome::collision : Outcome::ok, 1, 0, false});
+        }
+        record.give_up_if_hopeless();
+        return record.certificate(false).is_refused;
+    };
+    CHECK_FALSE(is_refused(0, 64));
+    CHECK_FALSE(is_refused(1, 64));
+    CHECK_FALSE(is_refused(2, 512));
+    CHECK(is_refused(2, 64));
+    CHECK(is_refused(3, 448));
+    CHECK(is_refused(4, 1300));
+    // With failures forgiven, so many do not matter, and one more ends it.
+    CHECK_FALSE(is_refused(2, 64, 2));
+    CHECK(is_refused(3, 64, 2));
 }
 
 TEST_CASE("The interval of a plan that passes does not exceed the failure probability that is allowed") {
