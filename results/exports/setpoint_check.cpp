@@ -103,7 +103,8 @@ struct Integral {
     double at = 0;                       ///< the rate, from the first set-point on
     double excess_rate = 0, excess = 0;  ///< what the acceleration exceeds the plan's by, once and twice, in its window
 
-    /// @param a,b motions in the file, and `plan_a`, `plan_b` of the plan, at both ends of a step
+    /// @param h length of a step [s]   @param a,b motions in the file at its ends
+    /// @param excess_a,excess_b what their accelerations exceed those of the plan by
     void add(double h, const Motion& a, const Motion& b, double excess_a, double excess_b, bool knows_acceleration) {
         // The trapezoidal rule, and its correction by the derivatives at the ends (Euler and Maclaurin).
         at += h * (a.rate + b.rate) / 2;

@@ -15,7 +15,7 @@ constexpr std::size_t max_columns = 200;
 std::vector<std::size_t> find_columns(CsvReader& csv, const std::vector<SetpointColumn>& columns) {
     std::vector<std::size_t> places;
     for (const SetpointColumn& column : columns) {
-        places.push_back(csv.required(column.name, "expected the columns that `downwash export` writes"));
+        places.push_back(csv.required(column.name, "the columns that `downwash export` writes"));
     }
     return places;
 }
@@ -48,7 +48,7 @@ SetpointFile read_setpoint_table(std::string_view text, const std::string& file,
     const SetpointTable table = csv.find("timestamp") ? px4_table(joints) : world_table(joints, turns);
     constexpr double second_us = 1e6;
     const double unit_s = table.is_in_us ? 1 / second_us : 1;
-    const std::size_t time = csv.required(table.time, "expected t_s, or PX4's timestamp");
+    const std::size_t time = csv.required(table.time, "t_s, or PX4's timestamp");
     SetpointFile read{.format = table.format,
                       .frame = table.frame,
                       .has_yaw_rate = table.has_yaw_rate,

@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "../support/solved_run.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/results/space_solution_file.hpp"
 #include "setpoint_plans.hpp"
 
 // Set-points that others wrote, or that were damaged, held against the plan.
@@ -91,6 +93,22 @@ TEST_CASE("Set-points of every kind of plan are read back from every format, at 
         check_round_trip(space_run(static_cast<unsigned>(7 + joints), joints), joints > 0, rate_hz,
                          rate_hz > 60 ? -75 : 0);
     }
+}
+
+TEST_CASE("Set-points of found and shipped plans are read back, of one with two goals too") {
+    static const RunRecord two_goals = [] {
+        Problem problem = ceiling_problem();
+        problem.goals_before = {configuration_goal(0, 2.5)};
+        problem.goals_before[0].hold_s = 1;
+        return read_run(SolvedRun(problem).folder());
+    }();
+    SpaceRunRecord shipped;
+    shipped.problem = read_space_problem(DOWNWASH_PROBLEMS "/space/around_a_girder.yaml");
+    shipped.plan = read_solution(DOWNWASH_PROBLEMS "/space/around_a_girder.json", shipped.problem).plan;
+    const double rate_hz = GENERATE(10., 50., 250.);
+    check_round_trip(record(), true, rate_hz, 0);
+    check_round_trip(two_goals, true, rate_hz, 40);
+    check_round_trip(shipped, true, rate_hz, 200);
 }
 
 TEST_CASE("A check says which axes, signs and bearings set-points would fit with") {
