@@ -191,7 +191,8 @@ Setpoint setpoint_of_ros(MessageReader& reader, const Node& node) {
     return point;
 }
 
-/// For each name of a JointTrajectory, which joint of the robot it is.
+/// For each name of a JointTrajectory, which joint of the robot it is. Where no name is known, they are names of
+/// another program, in the order of the joints.
 std::vector<std::size_t> joint_order(MessageReader& reader, const Node& names,
                                      const std::vector<JointInWorld>& joints) {
     std::vector<std::size_t> order;
@@ -199,10 +200,16 @@ std::vector<std::size_t> joint_order(MessageReader& reader, const Node& names,
     for (const JointInWorld& joint : joints) {
         known.push_back(joint.name);
     }
-    reader.each(names, joints.size(), [&](const Node& name, std::size_t) {
-        const auto found = std::ranges::find_if(known, [&](std::string_view one) { return name.json == one; });
-        const auto index = static_cast<std::size_t>(found - known.begin());
-        if (found == known.end()) {
+    const auto index_of = [&](const Json& name) {
+        const auto found = std::ranges::find_if(known, [&](std::string_view one) { return name == one; });
+        return static_cast<std::size_t>(found - known.begin());
+    };
+    const bool are_foreign = names.json.is_array() && std::ranges::none_of(names.json, [&](const Json& name) {
+                                 return index_of(name) < known.size();
+                             });
+    reader.each(names, joints.size(), [&](const Node& name, std::size_t i) {
+        const std::size_t index = are_foreign ? i : index_of(name.json);
+        if (index == known.size()) {
             reader.report(name, "the arm has no joint of that name: expected " + joined_names(known));
         } else if (std::ranges::find(order, index) != order.end()) {
             reader.report(name, "occurs twice");

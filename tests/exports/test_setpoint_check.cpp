@@ -5,6 +5,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "../support/solved_run.hpp"
 #include "downwash/base/key_error.hpp"
@@ -201,6 +202,26 @@ TEST_CASE("Set-points without the arm are checked without it, and times may begi
     CHECK(check.fits());
     CHECK_FALSE(check.has_arm);
     CHECK(check.distances.size() == 2);
+}
+
+TEST_CASE("Joints may stand in any order under their names, or in theirs under other names") {
+    const auto swap_joints = [](Json& document) {
+        for (Json& point : document["joint_trajectory"]["points"]) {
+            for (const char* numbers : {"positions", "velocities", "accelerations"}) {
+                std::swap(point[numbers][0], point[numbers][1]);
+            }
+        }
+    };
+    CHECK(check_of_changed([&](Json& document) {
+              swap_joints(document);
+              document["joint_trajectory"]["joint_names"] = {"joint_2", "joint_1"};
+          }).fits());
+    const SetpointCheck swapped = check_of_changed(swap_joints);
+    REQUIRE(swapped.findings.size() >= 4);  // angles and rates of both
+    CHECK_THAT(swapped.findings[0], Contains("joint_1 does not fit the plan"));
+    CHECK(check_of_changed([](Json& document) {
+              document["joint_trajectory"]["joint_names"] = {"shoulder", "elbow"};
+          }).fits());
 }
 
 TEST_CASE("Broken messages are errors with their places") {
