@@ -22,6 +22,8 @@ class DOWNWASH_EXPORT LineErrors {
     void add(std::size_t line, std::size_t column, const std::string& message);
     /// @throws InputError if there are errors
     void throw_any() const;
+    /// The first twenty.
+    [[nodiscard]] const std::vector<KeyError>& errors() const noexcept { return errors_; }
 
  private:
     void add_at(const std::string& place, const std::string& message);

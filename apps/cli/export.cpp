@@ -25,6 +25,7 @@ ExportSettings settings_of(const ExportArguments& given) {
         settings.origin = {given.origin[0], given.origin[1], given.origin[2]};
     }
     settings.bearing_deg = given.bearing_deg.value_or(0);
+    settings.is_east_north_up = given.bearing_deg.has_value();
     const auto end = std::find(mission_ends.begin(), mission_ends.end(), given.end);
     if (end == mission_ends.end()) {
         reject_unknown("--end", given.end, {mission_ends.begin(), mission_ends.end()});
@@ -71,6 +72,15 @@ void write_export(const Record& run, const ExportFormat& format, const fs::path&
 }  // namespace
 
 ExitCode export_run(const ExportArguments& given) {
+    if (given.check) {
+        return check_exported(given);
+    }
+    if (given.format.empty()) {
+        throw UsageError("expected --format F, what to write, or --check FILE, set-points to compare with the plan");
+    }
+    if (given.as_json) {
+        throw UsageError("--json: expected --check too");
+    }
     const ExportFormat& chosen = entry_named(export_formats, given.format, "--format");
     reject_useless_options(given, chosen);
     const fs::path folder = run_folder(given.folder);

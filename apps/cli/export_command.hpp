@@ -22,7 +22,9 @@ struct ExportArguments {
     std::vector<double> origin;
     std::optional<double> bearing_deg;
     std::string end = "hover";
-    bool anyway = false;  ///< write it even if the run's own flight failed
+    bool anyway = false;               ///< write it even if the run's own flight failed
+    std::optional<std::string> check;  ///< a file to compare with the plan, instead of writing one
+    bool as_json = false;
 };
 
 /// Adds `export`. @param run what it does; null if the program hands the command to downwash-export
@@ -30,5 +32,8 @@ void add_export(Command program, Action& action, ExitCode (*run)(const ExportArg
 
 /// The command of downwash-export.
 ExitCode export_run(const ExportArguments& given);
+
+/// The same with --check.
+ExitCode check_exported(const ExportArguments& given);
 
 }  // namespace downwash::cli

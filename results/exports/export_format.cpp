@@ -9,7 +9,8 @@ namespace downwash {
 namespace {
 
 /// The writers of export_formats, in the same order.
-constexpr std::array writers{setpoint_csv, ros_trajectory, px4_setpoints, qgc_plan, vtk_flight, vtk_scene, gltf_binary};
+constexpr std::array writers{setpoint_csv, ros_trajectory, px4_setpoints, px4_csv,    mavlink_log,
+                             qgc_plan,     vtk_flight,     vtk_scene,     gltf_binary};
 static_assert(writers.size() == export_formats.size());
 
 std::string written(const RunInWorld& run, const ExportFormat& format, const ExportSettings& settings) {

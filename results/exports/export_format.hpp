@@ -20,6 +20,7 @@ struct ExportFormat {
     bool has_rate = false;        ///< made of set-points at ExportSettings::rate_hz
     bool has_origin = false;      ///< needs ExportSettings::origin
     bool has_bearing = false;     ///< asks where north is: ExportSettings::bearing_deg
+    bool leaves_out_arm = false;  ///< commands for the vehicle alone
 };
 
 /// All formats for a run.
@@ -32,9 +33,11 @@ inline constexpr std::array export_formats{
     ExportFormat{.name = "ros",
                  .file_name = "trajectory.json",
                  .description = "the same as ROS messages: trajectory_msgs/MultiDOFJointTrajectory of the vehicle and "
-                                "trajectory_msgs/JointTrajectory of the arm",
+                                "trajectory_msgs/JointTrajectory of the arm; with --bearing in a map with x east and y "
+                                "north",
                  .is_to_be_flown = true,
-                 .has_rate = true},
+                 .has_rate = true,
+                 .has_bearing = true},
     ExportFormat{.name = "px4",
                  .file_name = "px4.json",
                  .description = "the same for PX4's offboard mode: px4_msgs/TrajectorySetpoint in its axes (north, "
@@ -42,12 +45,28 @@ inline constexpr std::array export_formats{
                  .is_to_be_flown = true,
                  .has_rate = true,
                  .has_bearing = true},
+    ExportFormat{
+        .name = "px4-csv",
+        .file_name = "px4.csv",
+        .description = "the same as a table, with the columns that PX4's ulog2csv writes, and the arm as in csv",
+        .is_to_be_flown = true,
+        .has_rate = true,
+        .has_bearing = true},
+    ExportFormat{.name = "mavlink",
+                 .file_name = "setpoints.tlog",
+                 .description = "the same as a log of MAVLink 2: SET_POSITION_TARGET_LOCAL_NED with all its fields; "
+                                "without the arm",
+                 .is_to_be_flown = true,
+                 .has_rate = true,
+                 .has_bearing = true,
+                 .leaves_out_arm = true},
     ExportFormat{.name = "qgc",
                  .file_name = "mission.plan",
                  .description = "the vehicle's way as a mission for QGroundControl; without the arm",
                  .is_to_be_flown = true,
                  .has_origin = true,
-                 .has_bearing = true},
+                 .has_bearing = true,
+                 .leaves_out_arm = true},
     ExportFormat{.name = "vtp",
                  .file_name = "flight.vtp",
                  .description = "the flight as VTK polydata: the ways of vehicle and end effector with all columns"},

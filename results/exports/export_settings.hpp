@@ -23,6 +23,8 @@ struct ExportSettings {
     std::optional<double> rate_hz;  ///< rate of set-points; empty: the rate of the controller
     std::optional<GeodeticOrigin> origin;
     double bearing_deg = 0;  ///< compass direction of the world's x axis, clockwise from north, -360 to 360
+    /// For ros: set-points in a map with x east and y north (REP 103 and 105) instead of the world of the problem.
+    bool is_east_north_up = false;
     MissionEnd mission_end = MissionEnd::hover;
 };
 

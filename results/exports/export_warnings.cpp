@@ -46,21 +46,20 @@ double least_clearance_m(const RunInWorld& run) {
 std::vector<std::string> warnings_of(const RunInWorld& run, const ExportFormat& format) {
     constexpr double small_arm_range_rad = 5 / degrees_per_radian;
     std::vector<std::string> warnings;
-    if (!format.has_origin) {
-        return warnings;
-    }
-    if (const double clearance_m = least_clearance_m(run); clearance_m < acceptance_radius_m) {
+    const bool is_mission = format.has_origin;
+    if (const double clearance_m = least_clearance_m(run); is_mission && clearance_m < acceptance_radius_m) {
         warnings.push_back(
             "the plan passes obstacles at " + to_text(clearance_m, 2) + " m, but an autopilot may cut corners by " +
             to_text(acceptance_radius_m) +
             " m, the acceptance radius of a waypoint: plan with a larger --margin, or fly the set-points "
             "of `--format csv` or `ros`");
     }
-    if (const double range_rad = arm_range_rad(run); range_rad > small_arm_range_rad) {
+    if (const double range_rad = arm_range_rad(run); format.leaves_out_arm && range_rad > small_arm_range_rad) {
         warnings.push_back("the plan moves the arm by " + to_fixed_text(range_rad * degrees_per_radian, 0) +
-                           " degrees, and a mission has no arm: `--format csv` and `ros` have");
+                           " degrees, and " + (is_mission ? "a mission has" : "these messages have") +
+                           " no arm: `--format csv` and `ros` have");
     }
-    if (!has_certificate(run)) {
+    if (is_mission && !has_certificate(run)) {
         warnings.push_back(
             "the plan has no certificate: it was checked in the nominal world alone; plan with an "
             "`uncertainty:`, or see `downwash validate --runs`");

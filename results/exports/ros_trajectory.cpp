@@ -2,12 +2,10 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "downwash/base/angles.hpp"
-#include "downwash/base/key_error.hpp"
-#include "downwash/base/text.hpp"
 #include "downwash/exports/formats.hpp"
 
 namespace downwash {
@@ -30,12 +28,12 @@ Json duration_json(double t_s) {
     return {{"sec", t_ns / second_ns}, {"nanosec", t_ns % second_ns}};
 }
 
-Json header_json() {
-    return {{"stamp", duration_json(0)}, {"frame_id", "world"}};
+Json header_json(std::string_view frame_id) {
+    return {{"stamp", duration_json(0)}, {"frame_id", frame_id}};
 }
 
 /// @param points whose joints move
-Json joints_json(const RunInWorld& run, const std::vector<Setpoint>& points) {
+Json joints_json(const RunInWorld& run, const std::vector<Setpoint>& points, std::string_view frame_id = "world") {
     Json names = Json::array(), list = Json::array();
     for (const JointInWorld& joint : run.joints) {
         names.push_back(joint.name);
@@ -53,7 +51,7 @@ Json joints_json(const RunInWorld& run, const std::vector<Setpoint>& points) {
                         {"effort", Json::array()},
                         {"time_from_start", duration_json(point.t_s)}});
     }
-    return {{"header", header_json()}, {"joint_names", std::move(names)}, {"points", std::move(list)}};
+    return {{"header", header_json(frame_id)}, {"joint_names", std::move(names)}, {"points", std::move(list)}};
 }
 
 std::string text_of(const Json& messages) {
@@ -61,31 +59,13 @@ std::string text_of(const Json& messages) {
     return messages.dump(indent) + "\n";
 }
 
-/// PX4's local frame: north, east, down. Its yaw counts clockwise from north, -pi to pi.
-class LocalFrame {
- public:
-    explicit LocalFrame(double bearing_deg)
-        : bearing_rad_(bearing_deg / degrees_per_radian),
-          sine_(std::sin(bearing_rad_)),
-          cosine_(std::cos(bearing_rad_)) {}
-
-    /// @param vector in the world
-    [[nodiscard]] Vector3 of(const Vector3& vector) const {
-        return {vector[0] * cosine_ + vector[1] * sine_, vector[0] * sine_ - vector[1] * cosine_, 0. - vector[2]};
-    }
-    [[nodiscard]] double yaw_rad(double world_yaw_rad) const {
-        constexpr double whole_turn_rad = 6.283185307179586;
-        return std::remainder(bearing_rad_ - world_yaw_rad, whole_turn_rad);
-    }
-
- private:
-    double bearing_rad_, sine_, cosine_;
-};
-
 }  // namespace
 
 std::string ros_trajectory(const RunInWorld& run, const ExportSettings& settings) {
-    const std::vector<Setpoint> points = setpoints_of(run, settings);
+    const bool is_map = settings.is_east_north_up;
+    const std::string_view frame_id = is_map ? map_frame_id : "world";
+    const std::vector<Setpoint> points =
+        setpoints_of(run, settings, is_map ? SetpointFrame::east_north_up : SetpointFrame::world);
     Json vehicle = Json::array();
     for (const Setpoint& point : points) {
         vehicle.push_back(
@@ -98,25 +78,23 @@ std::string ros_trajectory(const RunInWorld& run, const ExportSettings& settings
                 {"angular", vector_json({0, 0, point.yaw_acceleration_rad_s2})}}}},
              {"time_from_start", duration_json(point.t_s)}});
     }
-    return text_of({{"multi_dof_joint_trajectory",
-                     {{"header", header_json()}, {"joint_names", {"base_link"}}, {"points", std::move(vehicle)}}},
-                    {"joint_trajectory", joints_json(run, points)}});
+    return text_of(
+        {{"multi_dof_joint_trajectory",
+          {{"header", header_json(frame_id)}, {"joint_names", {"base_link"}}, {"points", std::move(vehicle)}}},
+         {"joint_trajectory", joints_json(run, points, frame_id)}});
 }
 
 std::string px4_setpoints(const RunInWorld& run, const ExportSettings& settings) {
-    if (!(std::abs(settings.bearing_deg) <= max_bearing_deg)) {
-        throw_input_error("the bearing is " + to_text(settings.bearing_deg) + " degrees: expected -360 to 360");
-    }
-    const LocalFrame frame(settings.bearing_deg);
-    const std::vector<Setpoint> points = setpoints_of(run, settings);
+    const std::vector<Setpoint> points = setpoints_of(run, settings, SetpointFrame::north_east_down);
     Json vehicle = Json::array();
     for (const Setpoint& point : points) {
-        vehicle.push_back({{"timestamp", std::llround(point.t_s * 1e6)},
-                           {"position", frame.of(point.position_m)},
-                           {"velocity", frame.of(point.velocity_m_s)},
-                           {"acceleration", frame.of(point.acceleration_m_s2)},
-                           {"yaw", frame.yaw_rad(point.yaw_rad)},
-                           {"yawspeed", 0. - point.yaw_rate_rad_s}});
+        vehicle.push_back({{"timestamp", whole_us(point.t_s)},
+                           {"position", point.position_m},
+                           {"velocity", point.velocity_m_s},
+                           {"acceleration", point.acceleration_m_s2},
+                           {"jerk", point.jerk_m_s3},
+                           {"yaw", point.yaw_rad},
+                           {"yawspeed", point.yaw_rate_rad_s}});
     }
     return text_of({{"trajectory_setpoints", std::move(vehicle)}, {"joint_trajectory", joints_json(run, points)}});
 }

@@ -22,19 +22,6 @@ double end_of_hover_s(const NumberTable& flight, double plan_s, double hold_s) {
     return end_s > plan_s ? end_s : plan_s + hold_s;
 }
 
-/// @param hold_s of the last goal   @param setpoint makes one of a time and a point of the reference
-template <class AnyPlan, class ToSetpoint>
-WayInWorld way_of(const AnyPlan& plan, const NumberTable& flight, double hold_s, const ToSetpoint& setpoint) {
-    WayInWorld way;
-    for (const auto& knot : plan.reference) {
-        way.knots.push_back(setpoint(static_cast<double>(knot.tick) * plan.tick_s, knot.point));
-    }
-    way.at = [&plan, setpoint](double t_s) { return setpoint(t_s, plan.at_time(t_s)); };
-    way.tick_s = plan.tick_s;
-    way.end_s = end_of_hover_s(flight, plan.duration_s(), hold_s);
-    return way;
-}
-
 TriangleMesh rotor_disc(const Vector3& hub_m, const Vector3& axis, double radius_m) {
     return surface_of(Obstacle{"", Cylinder{radius_m, disc_thickness_m, axis}, hub_m, {}});
 }
@@ -129,7 +116,9 @@ RunInWorld begun(const AnyRun& run, const ToSetpoint& setpoint) {
                     .rate_hz = problem.robot.controller.rate_hz,
                     .max_speed_m_s = problem.motion.max_speed_m_s};
     if (run.plan) {
-        seen.plan = way_of(*run.plan, run.flight, goals_of(in_order(problem, run.order)).back().hold_s, setpoint);
+        const double hold_s = goals_of(in_order(problem, run.order)).back().hold_s;
+        seen.plan = way_of(*run.plan, setpoint);
+        seen.plan->end_s = end_of_hover_s(run.flight, seen.plan->duration_s(), hold_s);
     }
     seen.robot = [&problem] { return surfaces_of(problem.robot); };
     return seen;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "downwash/controllers/axes.hpp"
-#include "downwash/exports/setpoints.hpp"
+#include "downwash/exports/way_in_world.hpp"
 #include "downwash/results/run_record.hpp"
 #include "downwash/scene/shapes.hpp"
 #include "downwash/scene/space_pose.hpp"
@@ -35,16 +35,6 @@ struct RobotSurfaces {
     std::string name;
     std::vector<std::pair<std::string, TriangleMesh>> body;  ///< parts of the multirotor with what they are
     std::vector<Link> links;                                 ///< from the multirotor outward
-};
-
-/// A plan in the world.
-struct WayInWorld {
-    std::vector<Setpoint> knots;
-    std::function<Setpoint(double t_s)> at;
-    double tick_s = 0;
-    double end_s = 0;  ///< of the hover at the last goal
-
-    [[nodiscard]] double duration_s() const { return knots.back().t_s; }
 };
 
 /// A run in the world frame, with full attitude and any joints. It refers to the record that it is made of.

@@ -1,21 +1,31 @@
 #include <algorithm>
-#include <string_view>
+#include <cmath>
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/exports/formats.hpp"
+#include "downwash/exports/setpoint_table.hpp"
 
 namespace downwash {
 namespace {
 
-void append(std::string& row, std::initializer_list<double> numbers) {
-    for (const double number : numbers) {
-        row += (row.empty() ? "" : ",") + to_text(number);
+std::string text_of(const SetpointTable& table, std::vector<Setpoint> points) {
+    std::vector<SetpointColumn> columns = table.vehicle;
+    columns.insert(columns.end(), table.jerk.begin(), table.jerk.end());
+    columns.insert(columns.end(), table.arm.begin(), table.arm.end());
+    std::string text(table.time);
+    for (const SetpointColumn& column : columns) {
+        (text += ',') += column.name;
     }
-}
-
-void append(std::string& row, const Vector3& vector) {
-    append(row, {vector[0], vector[1], vector[2]});
+    text += '\n';
+    for (Setpoint& point : points) {
+        text += table.is_in_us ? std::to_string(whole_us(point.t_s)) : to_text(point.t_s);
+        for (const SetpointColumn& column : columns) {
+            (text += ',') += to_text(column.number(point));
+        }
+        text += '\n';
+    }
+    return text;
 }
 
 }  // namespace
@@ -32,38 +42,24 @@ const WayInWorld& plan_to_be_flown(const RunInWorld& run) {
     return *run.plan;
 }
 
-std::vector<Setpoint> setpoints_of(const RunInWorld& run, const ExportSettings& settings) {
+std::int64_t whole_us(double t_s) {
+    constexpr double second_us = 1e6;
+    return std::llround(t_s * second_us);
+}
+
+std::vector<Setpoint> setpoints_of(const RunInWorld& run, const ExportSettings& settings, SetpointFrame frame) {
     const WayInWorld& plan = plan_to_be_flown(run);
-    return setpoints(plan.at, std::max(plan.end_s, plan.duration_s()), settings.rate_hz.value_or(run.rate_hz));
+    const SetpointAxes axes(frame, settings.bearing_deg);
+    const auto at = [&](double t_s) { return axes.of(plan.at(t_s)); };
+    return setpoints(at, std::max(plan.end_s, plan.duration_s()), settings.rate_hz.value_or(run.rate_hz));
 }
 
 std::string setpoint_csv(const RunInWorld& run, const ExportSettings& settings) {
-    std::string text = "t_s,x_m,y_m,z_m,vx_m_s,vy_m_s,vz_m_s,ax_m_s2,ay_m_s2,az_m_s2,yaw_rad";
-    if (run.turns) {
-        text += ",yaw_rate_rad_s,yaw_acceleration_rad_s2";
-    }
-    for (const JointInWorld& joint : run.joints) {
-        for (const std::string_view name : {joint.axis.position, joint.axis.velocity, joint.axis.acceleration}) {
-            (text += ',') += name;
-        }
-    }
-    text += '\n';
-    for (const Setpoint& point : setpoints_of(run, settings)) {
-        std::string row;
-        append(row, {point.t_s});
-        append(row, point.position_m);
-        append(row, point.velocity_m_s);
-        append(row, point.acceleration_m_s2);
-        append(row, {point.yaw_rad});
-        if (run.turns) {
-            append(row, {point.yaw_rate_rad_s, point.yaw_acceleration_rad_s2});
-        }
-        for (const JointSetpoint& joint : point.joints) {
-            append(row, {joint.angle_rad, joint.rate_rad_s, joint.acceleration_rad_s2});
-        }
-        text += row + '\n';
-    }
-    return text;
+    return text_of(world_table(run.joints, run.turns), setpoints_of(run, settings, SetpointFrame::world));
+}
+
+std::string px4_csv(const RunInWorld& run, const ExportSettings& settings) {
+    return text_of(px4_table(run.joints), setpoints_of(run, settings, SetpointFrame::north_east_down));
 }
 
 }  // namespace downwash

@@ -349,11 +349,11 @@ class Injection(Attack):
         self.program.run("report", "run", "--svg", codes={0})
         for picture in (self.folder / "run").glob("*.svg"):
             self.well_formed(picture)
-        for form in ("csv", "ros", "qgc", "vtp", "vtp-scene", "glb"):
+        for form in ("csv", "ros", "px4", "px4-csv", "mavlink", "qgc", "vtp", "vtp-scene", "glb"):
             out = self.folder / f"out.{form}"
             origin = ["--origin", "47", "8", "400"] if form == "qgc" else []
             self.program.run("export", "run", "--anyway", "--format", form, *origin, "-o", out, codes={0})
-            if form in ("ros", "qgc"):
+            if form in ("ros", "px4", "qgc"):
                 finite(out.read_text(), form)
             elif form.startswith("vtp"):
                 self.well_formed(out)

@@ -40,13 +40,15 @@ TEST_CASE("A run is exported in every format, under the usual name") {
     for (const auto& [format, name] : {std::pair{"csv", "setpoints.csv"},
                                        {"ros", "trajectory.json"},
                                        {"px4", "px4.json"},
+                                       {"px4-csv --bearing -30", "px4.csv"},
+                                       {"mavlink", "setpoints.tlog"},
                                        {"qgc --origin 47 -8.5 400 --bearing 90", "mission.plan"},
                                        {"vtp", "flight.vtp"},
                                        {"vtp-scene", "scene.vtp"},
                                        {"glb", "run.glb"}}) {
         CAPTURE(format);
         const Result result = work.succeed("export flown --format", format);
-        if (std::string_view(format).starts_with("qgc")) {
+        if (std::string_view(format).starts_with("qgc") || format == std::string_view("mavlink")) {
             CHECK_THAT(result.err, Contains("warning: the plan moves the arm by "));
         } else {
             CHECK(result.err.empty());
@@ -54,6 +56,30 @@ TEST_CASE("A run is exported in every format, under the usual name") {
         CHECK(result.out == std::string("flown/") + name + "\n");
         CHECK(work.text(std::string("flown/") + name).size() > 200);
     }
+}
+
+TEST_CASE("Exported set-points are read back and compared with the plan") {
+    const SolvedWorkspace work;
+    for (const char* format : {"csv", "ros", "px4", "px4-csv", "mavlink"}) {
+        CAPTURE(format);
+        work.succeed("export flown -o points --rate 50 --format", format);
+        const Result checked = work.succeed("export flown --check points");
+        CHECK(checked.err.empty());
+        CHECK_THAT(checked.out, StartsWith("The set-points fit the plan.\n") &&
+                                    Contains(std::string("format            ") + format + "\n") && Contains("yaw"));
+        const auto json = work.succeed("export flown --check points --json").json();
+        CHECK(json.at("fits") == true);
+        CHECK(json.at("format") == format);
+        CHECK(json.at("distances").at(0).at("name") == "position");
+        CHECK(json.at("distances").at(0).at("itself").get<double>() < 1e-5);
+    }
+    const Result turned = work.run("export flown --check points --bearing 90");
+    CHECK(turned.code == 3);
+    CHECK_THAT(turned.out, StartsWith("The set-points do not fit the plan.\n"));
+    CHECK_THAT(turned.err, StartsWith("points: byte 8: position does not fit the plan from 0.000 s on: ") &&
+                               Contains("is --bearing another one?"));
+    write_file(work.in_run("points"), "t_s,x_m\n0,1\n");
+    check_rejected(work.run("export flown --check points"), "points:1: ");
 }
 
 TEST_CASE("A plan whose flight failed is not handed on unasked") {
@@ -266,6 +292,9 @@ TEST_CASE("What cannot be reported or exported is rejected with a remedy") {
           {"export flown --format qgc --origin 47 8 400 --end rest", "expected hover, land or return"},
           {"export flown --format glb --end land", "--end: the format glb is no mission"},
           {"export flown --format glb --rate 5", "--rate: the format glb has no set-points"},
+          {"export flown --check x.csv --rate 5", "--rate: --check writes nothing"},
+          {"export flown --check x.csv", "x.csv cannot be read"},
+          {"export flown --format csv --json", "--json: expected --check"},
           {"export flown", "--format"}}) {
         CAPTURE(arguments);
         check_rejected(work.run(arguments), reason);

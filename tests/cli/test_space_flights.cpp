@@ -209,6 +209,9 @@ TEST_CASE("A run in space is exported in every format and drawn") {
     for (const auto& [format, name] : {std::pair{"csv", "setpoints.csv"},
                                        {"ros", "trajectory.json"},
                                        {"px4 --bearing 90", "px4.json"},
+                                       {"px4-csv --bearing 90", "px4.csv"},
+                                       {"mavlink --bearing 90", "setpoints.tlog"},
+                                       {"ros --bearing 90 -o run/map.json", "map.json"},
                                        {"qgc --origin 47 -8.5 400 --bearing 90", "mission.plan"},
                                        {"vtp", "flight.vtp"},
                                        {"vtp-scene", "scene.vtp"},
@@ -219,6 +222,12 @@ TEST_CASE("A run in space is exported in every format and drawn") {
     }
     CHECK_THAT(work.text("run/setpoints.csv"), Catch::StartsWith("t_s,x_m,y_m,z_m,") && Contains(",joint_3_rad,"));
     check_rejected(work.run("export run --format csv --bearing 90"), "--bearing: the format csv stays in the frame");
+    for (const char* file : {"setpoints.csv", "trajectory.json"}) {
+        work.succeed("export run --check", std::string("run/") + file);
+    }
+    for (const char* file : {"px4.json", "px4.csv", "setpoints.tlog", "map.json"}) {
+        work.succeed("export run --bearing 90 --check", std::string("run/") + file);
+    }
     CHECK(work.succeed("report run --svg --no-labels -o figures").out == "figures/flight.svg\nfigures/plots.svg\n");
     CHECK_THAT(work.text("figures/flight.svg"), Contains("from the front") && !Contains("bottom_flange"));
     // The page of the run, with what the judge found.

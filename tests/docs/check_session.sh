@@ -19,6 +19,7 @@ export XDG_CACHE_HOME=$folder/cache
 mkdir "$folder/build"
 ln -s "$program" "$folder/build/downwash"
 ln -s "$root/problems" "$folder/problems"
+ln -s "$root/tests" "$folder/tests"
 cd "$folder"
 
 checked=0

@@ -15,6 +15,7 @@ import glob
 import json
 import math
 import os
+import struct
 import subprocess
 import sys
 import tempfile
@@ -134,6 +135,16 @@ def misspelt(document):
             del group[key + "_"]
 
 
+def mavlink_checksum(message):
+    """CRC-16/MCRF4XX, as mavlink.io's guide to serialization has it."""
+    checksum = 0xFFFF
+    for byte in message:
+        mixed = byte ^ (checksum & 0xFF)
+        mixed ^= (mixed << 4) & 0xFF
+        checksum = (checksum >> 8) ^ (mixed << 8) ^ (mixed << 3) ^ (mixed >> 4)
+    return checksum
+
+
 # --- set-points -------------------------------------------------------------------------------------------------------
 
 
@@ -189,6 +200,55 @@ class SetPoints(ReadByOthers):
         for of, name in (("positions", "arm_rad"), ("velocities", "arm_rate_rad_s"),
                          ("accelerations", "arm_acceleration_rad_s2")):
             self.near([at[of] for at in arm["points"]], points[name][:, np.newaxis], 0)
+
+    @for_each_run
+    def test_px4_messages_have_the_members_of_their_definition_and_lie_north_east_and_down(self, run):
+        bearing_deg = 130
+        options = ("--rate", "20", "--bearing", str(bearing_deg))
+        messages = loaded(run.export("px4", *options))
+        points, table = csv_columns(run.export("csv", "--rate", "20")), csv_columns(run.export("px4-csv", *options))
+        for message in messages["trajectory_setpoints"]:
+            self.assertEqual(set(message), {"timestamp", "position", "velocity", "acceleration", "jerk", "yaw", "yawspeed"})
+        # The world turned to a map (x east, y north), then its axes in another order.
+        angle = math.radians(90 - bearing_deg)
+        to_map = np.array([[math.cos(angle), -math.sin(angle), 0], [math.sin(angle), math.cos(angle), 0], [0, 0, 1]])
+        from_map = np.array([[0, 1, 0], [1, 0, 0], [0, 0, -1]])
+        for member, names in (("position", "{}_m"), ("velocity", "v{}_m_s"), ("acceleration", "a{}_m_s2")):
+            expected = np.stack([points[names.format(axis)] for axis in "xyz"]).T @ (from_map @ to_map).T
+            found = np.array([message[member] for message in messages["trajectory_setpoints"]])
+            self.near(found, expected, 1e-9)
+            self.near(np.stack([table[f"{member}[{axis}]"] for axis in range(3)]).T, found, 0)
+        times = np.array([message["timestamp"] for message in messages["trajectory_setpoints"]])
+        self.near(times / 1e6, points["t_s"], 1e-6)
+        self.near(table["timestamp"], times, 0)
+        yaw = np.array([message["yaw"] for message in messages["trajectory_setpoints"]])
+        self.near(np.remainder(math.radians(bearing_deg) - points["yaw_rad"] - yaw + np.pi, 2 * np.pi), np.pi, 1e-9)
+        self.assertTrue(np.all(np.abs(yaw) <= np.pi))
+        self.near(table["arm_rad"], points["arm_rad"], 0)
+
+    @for_each_run
+    def test_mavlink_frames_have_the_checksum_and_the_fields_that_the_protocol_documents(self, run):
+        with open(run.export("mavlink", "--rate", "50", "--bearing", "-40"), "rb") as file:
+            log = file.read()
+        messages = loaded(run.export("px4", "--rate", "50", "--bearing", "-40"))["trajectory_setpoints"]
+        sequence = 0
+        while log:
+            (time_us,) = struct.unpack(">Q", log[:8])
+            length = log[9]
+            frame, checksum = log[8:18 + length], log[18 + length:20 + length]
+            log = log[20 + length:]
+            self.assertEqual(struct.unpack("<H", checksum)[0], mavlink_checksum(frame[1:] + bytes([143])))  # CRC_EXTRA
+            self.assertEqual((frame[0], frame[4], frame[5], frame[6]), (0xFD, sequence % 256, 1, 191))
+            self.assertEqual(int.from_bytes(frame[7:10], "little"), 84)
+            time_ms, *numbers, mask, system, component, axes = struct.unpack("<I11fHBBB", frame[10:].ljust(53, b"\0"))
+            self.assertEqual((mask, system, component, axes), (0, 1, 1, 1))
+            self.assertEqual(time_us, 1000 * time_ms)
+            message = messages[sequence]
+            self.assertLess(abs(time_us - message["timestamp"]), 501)
+            self.near(numbers, [*message["position"], *message["velocity"], *message["acceleration"], message["yaw"],
+                                message["yawspeed"]], 1e-3)
+            sequence += 1
+        self.assertEqual(sequence, len(messages))
 
     def test_ros_definitions_refuse_every_misspelt_member(self):
         messages_of_ros = validator(loaded(f"{HERE}/ros_trajectory.schema.json"))
