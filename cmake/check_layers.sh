@@ -10,6 +10,7 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 # everything.
 layers='
 base:
+logs:                  base
 scene:                 base
 dynamics:              base
 aeromap/effects:       base

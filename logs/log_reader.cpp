@@ -1,0 +1,96 @@
+#include "downwash/logs/log_reader.hpp"
+
+#include <algorithm>
+
+#include "downwash/base/files.hpp"
+#include "downwash/base/key_error.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/logs/csv_log.hpp"
+
+namespace downwash {
+namespace {
+
+/// Takes the series that a log lacks from another table of the same flight.
+void take_missing(FlightLog& log, FlightLog&& other) {
+    if (log.position_m.empty() && !other.position_m.empty()) {
+        log.recorded_axes = other.recorded_axes;
+        log.axes_source = other.axes_source;
+    }
+    if (log.rotor_commands.empty()) {
+        log.rotor_unit = other.rotor_unit;
+    }
+    for (const NamedSeries& each : named_series) {
+        if ((log.*each.series).empty()) {
+            log.*each.series = std::move(other.*each.series);
+        }
+    }
+    log.files.insert(log.files.end(), other.files.begin(), other.files.end());
+    log.remarks.insert(log.remarks.end(), other.remarks.begin(), other.remarks.end());
+}
+
+FlightLog read_tables(const std::vector<std::filesystem::path>& files, const LogOptions& options) {
+    FlightLog log;
+    std::vector<std::string> names;
+    for (const std::filesystem::path& file : files) {
+        const std::string text = naming(file, [&] { return read_whole_file(file, logs::max_csv_bytes); });
+        logs::CsvFlight table = logs::read_csv_log(text, file.string(), options);
+        names.insert(names.end(), table.names.begin(), table.names.end());
+        if (log.files.empty()) {
+            log = std::move(table.log);
+        } else {
+            take_missing(log, std::move(table.log));
+        }
+    }
+    for (const auto& [signal, column] : options.columns) {
+        if (std::ranges::find(names, column) == names.end()) {
+            throw_input_error(files.front().string() + ": there is no column '" + excerpt(column) +
+                              "', which is said to be " + signal + "; columns are " + excerpt(joined(names, ", ")));
+        }
+    }
+    return log;
+}
+
+FlightLog read_one(const std::filesystem::path& file, LogFormat format, const LogOptions& options) {
+    switch (format) {
+        case LogFormat::csv:
+            return read_tables({file}, options);
+        default:
+            throw_input_error(file.string() + ": logs of the format " + std::string(name_of(format)) +
+                              " cannot be read yet");
+    }
+}
+
+}  // namespace
+
+LogFormat log_format_of(std::string_view first_bytes) noexcept {
+    using namespace std::string_view_literals;
+    return first_bytes.starts_with("ULog\x01\x12\x35"sv) ? LogFormat::ulog
+           : first_bytes.starts_with("\xA3\x95"sv)       ? LogFormat::dataflash
+           : first_bytes.starts_with("#ROSBAG "sv)       ? LogFormat::rosbag
+                                                         : LogFormat::csv;
+}
+
+FlightLog read_flight_log(const std::vector<std::filesystem::path>& files, const LogOptions& options) {
+    const auto format_of = [&options](const std::filesystem::path& file) {
+        constexpr std::size_t enough = 16;
+        const std::string bytes = naming(file, [&] { return read_file(file, enough); });
+        return options.format.value_or(log_format_of(bytes));
+    };
+    if (files.size() > 1) {
+        for (const std::filesystem::path& file : files) {
+            if (const LogFormat format = format_of(file); format != LogFormat::csv) {
+                throw_input_error(file.string() + " is a " + std::string(name_of(format)) +
+                                  " log: expected one of these alone, or several tables of one flight");
+            }
+        }
+    }
+    FlightLog log =
+        files.size() > 1 ? read_tables(files, options) : read_one(files.front(), format_of(files.front()), options);
+    if (log.position_m.empty()) {
+        throw_input_error(log.files.front() + ": there is no position in this log");
+    }
+    finish(log);
+    return log;
+}
+
+}  // namespace downwash
