@@ -26,6 +26,7 @@ planner/ompl_planners: base scene dynamics effects grids aeromap controllers sim
 planner:               base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners
 planner/ompl:          base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners planner
 results:               base scene dynamics effects grids aeromap controllers simulation problems search planner
+results/comparison:    base logs scene dynamics effects grids aeromap controllers simulation problems
 results/exports:       base scene dynamics effects grids aeromap controllers simulation problems search planner results
 judge:                 base scene dynamics effects grids aeromap controllers simulation problems results
 apps/report:           base scene dynamics effects grids aeromap controllers simulation problems search planner results

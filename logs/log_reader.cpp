@@ -6,6 +6,8 @@
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/logs/csv_log.hpp"
+#include "downwash/logs/dataflash_reader.hpp"
+#include "downwash/logs/ulog_reader.hpp"
 
 namespace downwash {
 namespace {
@@ -54,10 +56,18 @@ FlightLog read_one(const std::filesystem::path& file, LogFormat format, const Lo
     switch (format) {
         case LogFormat::csv:
             return read_tables({file}, options);
-        default:
-            throw_input_error(file.string() + ": logs of the format " + std::string(name_of(format)) +
-                              " cannot be read yet");
+        case LogFormat::ulog: {
+            logs::LogBytes bytes(file);
+            return logs::read_ulog(bytes, options);
+        }
+        case LogFormat::dataflash: {
+            logs::LogBytes bytes(file);
+            return logs::read_dataflash(bytes, options);
+        }
+        case LogFormat::rosbag:
+            break;
     }
+    throw_input_error(file.string() + ": this build has no reader of bags");
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ std::optional<LogPlace> LogCursor::place(double time_s) {
     if (times.empty() || !(time_s >= times.front() && time_s <= times.back())) {
         return std::nullopt;
     }
-    if (times[row_] > time_s) {
+    constexpr std::size_t near = 8;
+    if (times[row_] > time_s || (row_ + near < times.size() && times[row_ + near] <= time_s)) {
         row_ = static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time_s) - times.begin()) - 1;
     }
     while (row_ + 1 < times.size() && times[row_ + 1] <= time_s) {
