@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace downwash {
 namespace {
@@ -14,6 +15,26 @@ void change_signs(LogSeries& series, std::size_t first, std::size_t last) {
             number = -number;
         }
     }
+}
+
+/// Counts times from another moment. Rows that then are no longer apart, at times that are far from it, become one.
+void shift(LogSeries& series, double first_s) {
+    LogSeries shifted{series.source, series.width, {}, {}};
+    const auto later = [&](std::size_t i) { return series.t_s[i] - first_s > series.t_s[i - 1] - first_s; };
+    std::size_t first_merged = 1;
+    while (first_merged < series.rows() && later(first_merged)) {
+        ++first_merged;
+    }
+    if (first_merged >= series.rows()) {  // as always but in tables of nonsense
+        for (double& time_s : series.t_s) {
+            time_s -= first_s;
+        }
+        return;
+    }
+    for (std::size_t i = 0; i < series.rows(); ++i) {
+        shifted.add(series.t_s[i] - first_s, series.row(i));
+    }
+    series = std::move(shifted);
 }
 
 void normalise_attitude(LogSeries& attitude) {
@@ -76,9 +97,7 @@ void finish(FlightLog& log) {
         return;
     }
     for (const NamedSeries& each : named_series) {
-        for (double& time_s : (log.*each.series).t_s) {
-            time_s -= first_s;
-        }
+        shift(log.*each.series, first_s);
     }
     log.start_s = first_s;
     log.duration_s = last_s - first_s;

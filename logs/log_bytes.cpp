@@ -9,7 +9,9 @@ namespace downwash::logs {
 
 LogBytes::LogBytes(const std::filesystem::path& file) : name_(file.string()) {
     static_cast<void>(naming(file, [&] { return read_file(file, 1); }));  // says what is wrong with it
-    stream_.open(file, std::ios::binary);
+    stream_.open(file, std::ios::binary | std::ios::ate);
+    size_ = static_cast<std::uint64_t>(std::max<std::streamoff>(stream_.tellg(), 0));
+    stream_.seekg(0);
 }
 
 std::string_view LogBytes::peek(std::size_t count) {
@@ -29,8 +31,14 @@ std::string_view LogBytes::peek(std::size_t count) {
     return held_.substr(0, count);
 }
 
-void LogBytes::skip(std::size_t count) {
-    held_.remove_prefix(std::min(count, held_.size()));
+void LogBytes::skip(std::uint64_t count) {
+    count = std::min(count, left());
+    if (count > held_.size() && stream_.is_open()) {
+        stream_.seekg(static_cast<std::streamoff>(count - held_.size()), std::ios::cur);
+        held_ = {};
+    } else {
+        held_.remove_prefix(static_cast<std::size_t>(std::min<std::uint64_t>(count, held_.size())));
+    }
     offset_ += count;
 }
 

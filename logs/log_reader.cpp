@@ -7,6 +7,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/logs/csv_log.hpp"
 #include "downwash/logs/dataflash_reader.hpp"
+#include "downwash/logs/rosbag_reader.hpp"
 #include "downwash/logs/ulog_reader.hpp"
 
 namespace downwash {
@@ -30,6 +31,16 @@ void take_missing(FlightLog& log, FlightLog&& other) {
     log.remarks.insert(log.remarks.end(), other.remarks.begin(), other.remarks.end());
 }
 
+/// Checks that every column that a user declares is in some table.
+void check_columns(const std::vector<std::string>& names, const std::string& file, const LogOptions& options) {
+    for (const auto& [signal, column] : options.columns) {
+        if (std::ranges::find(names, column) == names.end()) {
+            throw_input_error(file + ": there is no column '" + excerpt(column) + "', which is said to be " + signal +
+                              "; columns are " + excerpt(joined(names, ", ")));
+        }
+    }
+}
+
 FlightLog read_tables(const std::vector<std::filesystem::path>& files, const LogOptions& options) {
     FlightLog log;
     std::vector<std::string> names;
@@ -43,31 +54,22 @@ FlightLog read_tables(const std::vector<std::filesystem::path>& files, const Log
             take_missing(log, std::move(table.log));
         }
     }
-    for (const auto& [signal, column] : options.columns) {
-        if (std::ranges::find(names, column) == names.end()) {
-            throw_input_error(files.front().string() + ": there is no column '" + excerpt(column) +
-                              "', which is said to be " + signal + "; columns are " + excerpt(joined(names, ", ")));
-        }
-    }
+    check_columns(names, files.front().string(), options);
     return log;
 }
 
-FlightLog read_one(const std::filesystem::path& file, LogFormat format, const LogOptions& options) {
-    switch (format) {
-        case LogFormat::csv:
-            return read_tables({file}, options);
-        case LogFormat::ulog: {
-            logs::LogBytes bytes(file);
-            return logs::read_ulog(bytes, options);
-        }
-        case LogFormat::dataflash: {
-            logs::LogBytes bytes(file);
-            return logs::read_dataflash(bytes, options);
-        }
-        case LogFormat::rosbag:
-            break;
+FlightLog read_binary(logs::LogBytes& bytes, LogFormat format, const LogOptions& options) {
+    return format == LogFormat::ulog        ? logs::read_ulog(bytes, options)
+           : format == LogFormat::dataflash ? logs::read_dataflash(bytes, options)
+                                            : logs::read_rosbag(bytes, options);
+}
+
+FlightLog finished(FlightLog log) {
+    if (log.position_m.empty()) {
+        throw_input_error(log.files.front() + ": there is no position in this log");
     }
-    throw_input_error(file.string() + ": this build has no reader of bags");
+    finish(log);
+    return log;
 }
 
 }  // namespace
@@ -94,13 +96,23 @@ FlightLog read_flight_log(const std::vector<std::filesystem::path>& files, const
             }
         }
     }
-    FlightLog log =
-        files.size() > 1 ? read_tables(files, options) : read_one(files.front(), format_of(files.front()), options);
-    if (log.position_m.empty()) {
-        throw_input_error(log.files.front() + ": there is no position in this log");
+    const LogFormat format = format_of(files.front());
+    if (format == LogFormat::csv) {
+        return finished(read_tables(files, options));
     }
-    finish(log);
-    return log;
+    logs::LogBytes bytes(files.front());
+    return finished(read_binary(bytes, format, options));
+}
+
+FlightLog read_flight_log(std::string_view bytes, const std::string& name, const LogOptions& options) {
+    const LogFormat format = options.format.value_or(log_format_of(bytes));
+    if (format != LogFormat::csv) {
+        logs::LogBytes log(bytes, name);
+        return finished(read_binary(log, format, options));
+    }
+    logs::CsvFlight table = logs::read_csv_log(bytes, name, options);
+    check_columns(table.names, name, options);
+    return finished(std::move(table.log));
 }
 
 }  // namespace downwash

@@ -33,6 +33,10 @@ struct LogOptions {
 [[nodiscard]] DOWNWASH_EXPORT FlightLog read_flight_log(const std::vector<std::filesystem::path>& files,
                                                         const LogOptions& options = {});
 
+/// The same of bytes in memory. @param name of the file, for messages and for what ulog2csv tells by it
+[[nodiscard]] DOWNWASH_EXPORT FlightLog read_flight_log(std::string_view bytes, const std::string& name,
+                                                        const LogOptions& options = {});
+
 /// The format that the first bytes of a file show; CSV if they show none.
 [[nodiscard]] DOWNWASH_EXPORT LogFormat log_format_of(std::string_view first_bytes) noexcept;
 

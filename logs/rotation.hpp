@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "downwash/base/vector3.hpp"
+
 // Attitudes as logs write them.
 
 namespace downwash {
@@ -16,6 +18,13 @@ namespace downwash {
     const double cy = std::cos(yaw_rad / 2), sy = std::sin(yaw_rad / 2);
     return {cr * cp * cy + sr * sp * sy, sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
             cr * cp * sy - sr * sp * cy};
+}
+
+/// A vector of the body in world axes. @param q of length 1
+[[nodiscard]] inline Vector3 rotated(const std::array<double, 4>& q, const Vector3& of_body) noexcept {
+    const Vector3 axis{q[1], q[2], q[3]};
+    const Vector3 twice = 2.0 * cross(axis, of_body);
+    return of_body + q[0] * twice + cross(axis, twice);
 }
 
 }  // namespace downwash

@@ -136,6 +136,37 @@ TEST_CASE("A DataFlash log that is damaged is an error at the message that shows
     begins(error_in(format.text), at + "messages of FMT are said to have 88 bytes");
 }
 
+TEST_CASE("A bag that is damaged is an error at the record that shows it") {
+    const std::string magic = "#ROSBAG V2.0\n";
+    const auto record = [&](const std::string& header, const std::string& data) {
+        return error_in(magic + BagWriter::record(header, data));
+    };
+    const auto field = &BagWriter::field;
+    begins(error_in("#ROSBAG V1.2\n and more", as(LogFormat::rosbag)), "byte 0: is no bag of ROS 1");
+    begins(error_in(magic + "\xff\xff\xff\xff"), "byte 13: the header of a record has 4294967295 bytes");
+    begins(error_in(magic + std::string("\x08\0\0\0op", 6)), "byte 13: the log ends within a record");
+    begins(record("abc", ""), "byte 13: a field of a header is longer than the header");
+    begins(record(std::string("\x09\0\0\0op", 6), ""), "byte 13: a field of a header is longer than the header");
+    begins(record(BagWriter::number(2) + "op", ""), "byte 13: a field of a header has no name");
+    begins(record("", ""), "byte 13: a record does not say what it is");
+    begins(record(field("op", "\x09"), ""), "byte 13: a record has the unknown op 9");
+    begins(record(field("op", "\x07"), ""), "byte 13: the header of a record has no number conn");
+    begins(record(field("op", "\x07") + field("conn", BagWriter::number(1)), ""),
+           "byte 13: a connection names no topic");
+    begins(record(field("op", "\x02") + field("conn", BagWriter::number(1)), ""),
+           "byte 13: a message is of the connection 1, which no record describes");
+    BagWriter packed("lz4");
+    packed.connect(1, "/a", "nav_msgs/Odometry");
+    CHECK(error_in(packed.text()).find("the chunk is compressed by lz4: `rosbag decompress`") != std::string::npos);
+    BagWriter cut;
+    cut.connect(1, "/a", "nav_msgs/Odometry");
+    cut.message(1, 5, "too short");
+    CHECK(error_in(cut.text()).find("a message of /a ends before its type nav_msgs/Odometry does") !=
+          std::string::npos);
+    const std::string whole = bag_of(small_flight());
+    CHECK(error_in(whole.substr(0, whole.size() - 2000)).find("the log ends within a record") != std::string::npos);
+}
+
 TEST_CASE("A log without places says so") {
     CHECK(error_in(ULogWriter().text) == "there is no position in this log");
     CHECK(error_in(DataFlashWriter().text) == "there is no position in this log");
@@ -144,8 +175,8 @@ TEST_CASE("A log without places says so") {
 TEST_CASE("No cut and no changed byte of a log does more than an error") {
     LoggedFlight beginning = small_flight();
     beginning.resize(3);
-    for (const std::string& whole : {ulog_of(beginning, 10), dataflash_of(beginning, 10)}) {
-        const LogOptions options = as(whole.starts_with("ULog") ? LogFormat::ulog : LogFormat::dataflash);
+    for (const std::string& whole : {ulog_of(beginning, 10), dataflash_of(beginning, 10), bag_of(beginning)}) {
+        const LogOptions options = as(log_format_of(whole));
         std::size_t errors = 0;
         for (std::size_t i = 0; i < whole.size(); i += 3) {
             std::string damaged = whole;

@@ -115,3 +115,47 @@ TEST_CASE("Places that the autopilot does not trust are left out") {
     }
     CHECK(WrittenLog(log.text).read().position_m.rows() == 2);
 }
+
+TEST_CASE("A bag holds odometry at the stamps of its headers, with velocities turned into the world, and joints") {
+    LoggedFlight flight = small_flight();
+    for (LoggedMoment& moment : flight) {
+        moment.joints_rad = {0.1 * moment.t_s, -0.2};
+    }
+    const FlightLog log = WrittenLog(bag_of(in_frame(flight, {0, {}, 1.6e9, 1}))).read();
+    CHECK(log.format == LogFormat::rosbag);
+    CHECK(log.recorded_axes == LogAxes::up);
+    CHECK(log.start_s == Approx(1.6e9));
+    REQUIRE(log.position_m.rows() == 101);
+    REQUIRE(log.joints_rad.rows() == 101);
+    CHECK(log.position_m.source == "/odometry");
+    CHECK(log.joints_rad.row(100)[0] == Approx(0.2));
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(log.position_m.row(100)[i] == Approx(flight[100].position_m[i]));
+        CHECK(log.velocity_m_s.row(100)[i] == Approx(flight[100].velocity_m_s[i]).margin(1e-9));
+        CHECK(log.body_rates_rad_s.row(100)[i] == Approx(flight[100].body_rates_rad_s[i]));
+    }
+    CHECK(log.attitude.row(100)[3] == Approx(flight[100].attitude[3]));
+    CHECK(log.remarks.empty());
+}
+
+TEST_CASE("Of several topics of a kind the first is read, or those that are asked for") {
+    BagWriter bag;
+    bag.connect(4, "/a", "geometry_msgs/PoseStamped");
+    bag.connect(5, "/b", "geometry_msgs/PoseStamped");
+    for (const std::uint32_t topic : {4U, 5U}) {
+        for (const double t : {10.0, 11.0}) {
+            Bytes pose;
+            pose.text = BagWriter::number(0) + BagWriter::stamp(t) + BagWriter::number(0);
+            for (const double number : {1.0 * topic, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0}) {
+                pose.add<double>(number);
+            }
+            bag.message(topic, t, pose.text);
+        }
+    }
+    const WrittenLog written(bag.text());
+    CHECK(written.read().position_m.row(0)[0] == 4);
+    CHECK(written.read().remarks.at(0).find("not /b") != std::string::npos);
+    LogOptions options;
+    options.topics = {"/b"};
+    CHECK(written.read(options).position_m.row(0)[0] == 5);
+}

@@ -262,4 +262,99 @@ inline std::string ulog2csv_of(const LoggedFlight& flight) {
     return text;
 }
 
+/// A bag of ROS 1, format 2.0 (wiki.ros.org, "Bags/Format/2.0"): one chunk, not compressed.
+class BagWriter {
+ public:
+    explicit BagWriter(std::string compression = "none") : compression_(std::move(compression)) {}
+
+    void connect(std::uint32_t id, const std::string& topic, const std::string& type) {
+        chunk_ += record(field("op", "\x07") + field("conn", number(id)) + field("topic", topic),
+                         field("topic", topic) + field("type", type) + field("md5sum", std::string(32, '0')) +
+                             field("message_definition", "float64 x"));
+    }
+    void message(std::uint32_t id, double t_s, const std::string& body) {
+        chunk_ += record(field("op", "\x02") + field("conn", number(id)) + field("time", stamp(t_s)), body);
+    }
+    [[nodiscard]] std::string text() const {
+        const std::string header = field("op", "\x03") + field("index_pos", std::string(8, '\0')) +
+                                   field("conn_count", number(1)) + field("chunk_count", number(1));
+        return "#ROSBAG V2.0\n" + record(header, std::string(4096 - 8 - header.size(), ' ')) +
+               record(field("op", "\x05") + field("compression", compression_) +
+                          field("size", number(static_cast<std::uint32_t>(chunk_.size()))),
+                      chunk_) +
+               record(field("op", "\x04") + field("ver", number(1)), std::string(12, 'x'));
+    }
+
+    static std::string number(std::uint32_t value) { return Bytes().add<std::uint32_t>(value).text; }
+    static std::string stamp(double t_s) {
+        const auto seconds = static_cast<std::uint32_t>(t_s);
+        return number(seconds) + number(static_cast<std::uint32_t>(std::llround(1e9 * (t_s - seconds))));
+    }
+    static std::string field(const std::string& name, const std::string& value) {
+        const std::string whole = name + '=' + value;
+        return number(static_cast<std::uint32_t>(whole.size())) + whole;
+    }
+    static std::string record(const std::string& header, const std::string& data) {
+        return number(static_cast<std::uint32_t>(header.size())) + header +
+               number(static_cast<std::uint32_t>(data.size())) + data;
+    }
+
+ private:
+    std::string compression_, chunk_;
+};
+
+/// A flight as a bag of nav_msgs/Odometry and, with joints, sensor_msgs/JointState.
+inline std::string bag_of(const LoggedFlight& flight) {
+    BagWriter bag;
+    bag.connect(0, "/camera", "sensor_msgs/Image");
+    bag.connect(1, "/odometry", "nav_msgs/Odometry");
+    bag.connect(2, "/joint_states", "sensor_msgs/JointState");
+    for (const LoggedMoment& moment : flight) {
+        const auto& q = moment.attitude;
+        const auto header = [&](const std::string& frame) {
+            return BagWriter::number(7) + BagWriter::stamp(moment.t_s) +
+                   BagWriter::number(static_cast<std::uint32_t>(frame.size())) + frame;
+        };
+        bag.message(0, moment.t_s + 0.3, "no image");
+        Bytes odometry;
+        odometry.text = header("map") + BagWriter::number(4) + "base";
+        for (const double number : moment.position_m) {
+            odometry.add<double>(number);
+        }
+        for (const double number : {q[1], q[2], q[3], q[0]}) {
+            odometry.add<double>(number);
+        }
+        odometry.add_text("", 36 * 8);
+        // In the body's axes: the inverse rotation, as a matrix.
+        const Vector3& v = moment.velocity_m_s;
+        const double w = q[0], x = q[1], y = q[2], z = q[3];
+        odometry.add<double>((1 - 2 * (y * y + z * z)) * v[0] + 2 * (x * y + w * z) * v[1] +
+                             2 * (x * z - w * y) * v[2]);
+        odometry.add<double>(2 * (x * y - w * z) * v[0] + (1 - 2 * (x * x + z * z)) * v[1] +
+                             2 * (y * z + w * x) * v[2]);
+        odometry.add<double>(2 * (x * z + w * y) * v[0] + 2 * (y * z - w * x) * v[1] +
+                             (1 - 2 * (x * x + y * y)) * v[2]);
+        for (const double number : moment.body_rates_rad_s) {
+            odometry.add<double>(number);
+        }
+        odometry.add_text("", 36 * 8);
+        bag.message(1, moment.t_s + 0.3, odometry.text);
+        if (!moment.joints_rad.empty()) {
+            const auto count = static_cast<std::uint32_t>(moment.joints_rad.size());
+            Bytes joints;
+            joints.text = header("") + BagWriter::number(count);
+            for (std::uint32_t i = 0; i < count; ++i) {
+                joints.text += BagWriter::number(5) + "joint";
+            }
+            joints.text += BagWriter::number(count);
+            for (const double number : moment.joints_rad) {
+                joints.add<double>(number);
+            }
+            joints.text += BagWriter::number(0) + BagWriter::number(0);
+            bag.message(2, moment.t_s + 0.3, joints.text);
+        }
+    }
+    return bag.text();
+}
+
 }  // namespace downwash::test
