@@ -99,16 +99,19 @@ ReadPlan read_plan(const CompareArguments& given) {
     return std::visit([&plan](const auto& of) { return planned(of, read_solution(plan, of)); }, problem);
 }
 
-/// The first world of the certificate that the plan has; that of a first attempt without one.
+/// A world of the plan's certificate, which others of it follow; the first one of all without a certificate.
 std::uint64_t first_world(const std::string& solution_text) {
-    constexpr std::uint64_t worlds_per_attempt = 1'000'000;  // docs/results.md
     const Json solution = Json::parse(solution_text);
     const auto certificate = solution.find("certificate");
-    if (certificate == solution.end() || !certificate->is_object()) {
+    if (certificate == solution.end() || !certificate->is_object() || !certificate->contains("worst")) {
         return 1;
     }
-    const std::uint64_t attempts = certificate->value("attempts", std::uint64_t{1});
-    return attempts < 1 ? 1 : (attempts - 1) * worlds_per_attempt + 1;
+    std::optional<std::uint64_t> least;
+    for (const Json& sample : certificate->at("worst")) {
+        const auto world = sample.value("world", std::uint64_t{1});
+        least = std::min(least.value_or(world), world);
+    }
+    return least.value_or(1);
 }
 
 /// A list of numbers of every so many rows; what is not finite becomes null.
