@@ -13,6 +13,13 @@ void choose(std::deque<CandidateSeries>& candidates, FlightLog& log) {
                 best = &candidate;
             }
         }
+        for (const CandidateSeries& candidate : candidates) {
+            if (candidate.what == each.series && candidate.invalid_rows > 0) {
+                log.remarks.push_back(std::to_string(candidate.invalid_rows) + " rows of " + candidate.series.source +
+                                      " (" + std::string(each.name) +
+                                      ") are skipped, since the autopilot says that they are not valid");
+            }
+        }
         if (best == nullptr) {
             continue;
         }

@@ -18,6 +18,7 @@ struct CandidateSeries {
     LogSeries series;
     RotorUnit rotor_unit = RotorUnit::newton;  ///< of rotor commands
     std::size_t late_rows = 0;                 ///< not later than those before
+    std::size_t invalid_rows = 0;              ///< that the autopilot itself does not trust
 };
 
 /// Moves the best candidate of each kind into a log, and remarks on what it leaves out of them.

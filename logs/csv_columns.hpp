@@ -34,6 +34,8 @@ class CsvColumns {
     [[nodiscard]] std::vector<SignalColumn> find_numbered(std::string_view beginning) const;
     /// The axes that the names show; empty if they show none.
     [[nodiscard]] std::optional<LogAxes> axes() const;
+    /// Whether the table is a topic of PX4 as ulog2csv writes it, by the name of its file.
+    [[nodiscard]] bool is_of_ulog() const noexcept { return is_of_ulog_; }
     /// Whether the names are those of a trajectory.csv of ours.
     [[nodiscard]] bool is_own() const;
 

@@ -151,9 +151,14 @@ class CsvLog {
         }
         const auto has_rows = [](const Group& group) { return !group.series->empty(); };
         if (std::ranges::none_of(groups_, has_rows)) {
-            errors_.add(csv_.header_line(),
-                        "has nothing of a flight in '" + excerpt(joined(csv_.names(), ", ")) +
-                            "': expected columns such as x, y, z, or --column x=NAME for each of them");
+            std::string missing;
+            for (const auto& [signal, column] : options_.columns) {
+                missing += csv_.find(column) ? "" : "; there is no column " + excerpt(column) + " to be " + signal;
+            }
+            errors_.add(csv_.header_line(), "has nothing of a flight in '" + excerpt(joined(csv_.names(), ", ")) +
+                                                "': expected columns such as x, y, z, or --column x=NAME for each of "
+                                                "them" +
+                                                missing);
         }
     }
 
@@ -172,7 +177,7 @@ class CsvLog {
         if (name.ends_with("_s")) {
             return 1;
         }
-        if (name.ends_with("US") || name.ends_with("_us")) {
+        if (name.ends_with("US") || name.ends_with("_us") || (name == "timestamp" && columns_.is_of_ulog())) {
             return 1e-6;
         }
         if (name == "%time" || name.ends_with("_ns")) {

@@ -66,7 +66,8 @@ FlightLog read_binary(logs::LogBytes& bytes, LogFormat format, const LogOptions&
 
 FlightLog finished(FlightLog log) {
     if (log.position_m.empty()) {
-        throw_input_error(log.files.front() + ": there is no position in this log");
+        throw_input_error(log.files.front() + ": there is no position in this log" +
+                          (log.remarks.empty() ? "" : "; " + joined(log.remarks, "; ")));
     }
     finish(log);
     return log;

@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::string_view magic = "#ROSBAG V2.0\n";
 constexpr std::size_t length_bytes = 4;
-constexpr std::size_t max_header_bytes = std::size_t{1} << 20U, max_message_bytes = std::size_t{64} << 20U;
+constexpr std::size_t max_header_bytes = std::size_t{1} << 20U;
+constexpr std::size_t max_bag_message_bytes = std::size_t{64} << 20U;
 constexpr std::size_t max_connections = 10'000;
 
 /// Kinds of records.
@@ -202,7 +203,7 @@ class Bag {
         if (!topic) {
             return;
         }
-        if (data_bytes > max_message_bytes) {
+        if (data_bytes > max_bag_message_bytes) {
             fail("a message of " + excerpt(topic->name) + " has more than 64 MiB");
         }
         const auto size = static_cast<std::size_t>(data_bytes);

@@ -265,6 +265,7 @@ class ULog {
     void take_row(const Subscription& subscription, const Taken& taken, const char* data) {
         const auto number = [data](const Place& place) { return number_of(place.type, data + place.at); };
         if (!std::ranges::all_of(taken.valid, [&](const Place& flag) { return number(flag) != 0; })) {
+            ++taken.into->invalid_rows;
             return;
         }
         row_.clear();

@@ -38,7 +38,7 @@ constexpr char findings_name[] = "comparison.json";
 constexpr char page_name[] = "comparison.html";
 constexpr std::uint64_t usual_worlds = 32, most_worlds = 10'000;
 
-LogOptions log_options(const CompareArguments& given) {
+LogOptions log_options(const CompareLogArguments& given) {
     LogOptions options;
     if (given.format) {
         constexpr std::array names{"ulog", "dataflash", "rosbag", "csv"};
@@ -76,7 +76,7 @@ struct ReadPlan {
     std::uint64_t seed = 1;
 };
 
-std::string problem_file(const CompareArguments& given) {
+std::string problem_file(const CompareLogArguments& given) {
     if (given.problem) {
         return *given.problem;
     }
@@ -92,7 +92,7 @@ ReadPlan planned(const SomeProblem& problem, const AnySolution& solution) {
     return {compared_plan(in_order(problem, solution.order), *solution.plan), problem.name, solution.seed};
 }
 
-ReadPlan read_plan(const CompareArguments& given) {
+ReadPlan read_plan(const CompareLogArguments& given) {
     const AnyProblem problem = read_any_problem(problem_file(given));
     const std::string plan = plan_file(given.plan);
     require_whole_plan(given.plan);
@@ -175,7 +175,7 @@ std::string page_data_of(const ShownComparison& shown, const Json& findings, con
     return page.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
-std::string command_of(const CompareArguments& given) {
+std::string command_of(const CompareLogArguments& given) {
     std::string command = "downwash compare " + shell_word(given.plan);
     for (const std::string& log : given.logs) {
         command += " " + shell_word(log);
@@ -200,7 +200,7 @@ std::string command_of(const CompareArguments& given) {
     return command + (given.allows_truncation ? " --allow-truncated" : "");
 }
 
-void write_comparison(const CompareArguments& given, const OutputFolder& folder, const ShownComparison& shown,
+void write_comparison(const CompareLogArguments& given, const OutputFolder& folder, const ShownComparison& shown,
                       const Json& findings) {
     NamedTexts files{{findings_name, text_of(findings)}};
     if (has_pages()) {
@@ -211,7 +211,7 @@ void write_comparison(const CompareArguments& given, const OutputFolder& folder,
 
 }  // namespace
 
-ExitCode compare_with_log(const CompareArguments& given) {
+ExitCode compare_with_log(const CompareLogArguments& given) {
     Interruption interruption;
     ProgressDisplay display(given.is_quiet);
     const LogOptions options = log_options(given);

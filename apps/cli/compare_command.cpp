@@ -4,7 +4,7 @@
 
 namespace downwash::cli {
 
-void add_compare(Command program, Action& action, ExitCode (*run)(const CompareArguments&)) {
+void add_compare(Command program, Action& action, ExitCode (*run)(const CompareLogArguments&)) {
     auto [command, given] =
         add_command(program, action, "compare",
                     "Compare a flight log with the plan that was flown: tracking by axis and phase, clearance as "

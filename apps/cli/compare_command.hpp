@@ -10,7 +10,7 @@
 namespace downwash::cli {
 
 /// What `compare` is asked for.
-struct CompareArguments {
+struct CompareLogArguments {
     std::string plan;
     std::vector<std::string> logs;
     std::optional<std::string> problem, out, format, axes, time_unit, angles;
@@ -23,9 +23,9 @@ struct CompareArguments {
 };
 
 /// Adds `compare`. @param run what it does; null in a program that leaves it to downwash-compare
-void add_compare(Command program, Action& action, ExitCode (*run)(const CompareArguments&));
+void add_compare(Command program, Action& action, ExitCode (*run)(const CompareLogArguments&));
 
 /// The command of downwash-compare.
-ExitCode compare_with_log(const CompareArguments& given);
+ExitCode compare_with_log(const CompareLogArguments& given);
 
 }  // namespace downwash::cli

@@ -215,6 +215,11 @@ LogAlignment align(const FlightLog& log, const PlannedFlight& planned, const Ali
             std::string((log.recorded_axes == LogAxes::down) != best.is_turned_over ? "down" : "up") +
             (ratio > is_clear ? " fits the plan" : " fits the plan hardly better than the other; --axes says it"));
     }
+    constexpr double likely = 0.5;
+    if (best.is_time_fitted && best.correlation < likely) {
+        best.remarks.push_back(
+            "the speeds in the log hardly resemble those of the plan: is it the log of this flight?");
+    }
     if (!(best.covered >= least_covered)) {
         throw_input_error("the log has a position during " + to_fixed_text(100 * best.covered, 0) +
                           " % of the plan: expected " + to_fixed_text(100 * least_covered, 0) +

@@ -24,13 +24,15 @@ TEST_CASE("The flight of a run is its own log: no error from it, and the referen
           Approx(execution.at("min_clearance_m").get<double>()).margin(0.005));
     CHECK(found.at("envelope").is_null());
 
-    const Result text = work.succeed("compare run/solution.json run/trajectory.csv --in-world --time-offset 0 --out found");
+    const Result text =
+        work.succeed("compare run/solution.json run/trajectory.csv --in-world --time-offset 0 --out found");
     CHECK_THAT(text.out, Contains("taken as the problem's world") && Contains("hover") && Contains("thrust"));
     CHECK(work.files("found").size() == (has_pages ? 2 : 1));
     CHECK(nlohmann::json::parse(work.text("found/comparison.json")).at("alignment").at("shift_m") ==
           nlohmann::json({0.0, 0.0, 0.0}));
     if (has_pages) {
-        CHECK_THAT(work.text("found/comparison.html"), Contains("downwash/comparison-report/v1") && Contains("--in-world"));
+        CHECK_THAT(work.text("found/comparison.html"),
+                   Contains("downwash/comparison-report/v1") && Contains("--in-world"));
     }
 
     write_file(work.in_run("cut.ulg"), std::string("ULog\x01\x12\x35", 7));
@@ -40,5 +42,6 @@ TEST_CASE("The flight of a run is its own log: no error from it, and the referen
     check_rejected(work.run("compare run run/trajectory.csv --worlds 3"), "the problem has no `uncertainty:`");
     std::filesystem::create_directory(work.in_run("alone"));
     write_file(work.in_run("alone/solution.json"), work.text("run/solution.json"));
-    check_rejected(work.run("compare alone/solution.json run/trajectory.csv"), "--problem says which problem the plan is of");
+    check_rejected(work.run("compare alone/solution.json run/trajectory.csv"),
+                   "--problem says which problem the plan is of");
 }

@@ -149,7 +149,7 @@ TEST_CASE("A push aside shows in tracking, and as a time outside of what the wor
 }
 
 TEST_CASE("The envelope of worlds does not depend on the number of threads") {
-    const EnvelopeWorlds one{1, 1, 3, 1, {}}, two{1, 1, 3, 2, {}};
+    const EnvelopeWorlds one{1, 1, 2, 1, {}}, two{1, 1, 2, 2, {}};
     const WorldEnvelope a = world_envelope(compared_girder(), girder_plan().tick_s, one);
     const WorldEnvelope b = world_envelope(compared_girder(), girder_plan().tick_s, two);
     CHECK(a.low_m == b.low_m);

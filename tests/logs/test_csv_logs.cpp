@@ -12,7 +12,7 @@ using namespace downwash::test;
 
 namespace {
 
-std::string error_in(const std::string& text, const LogOptions& options = {}) {
+std::string table_error(const std::string& text, const LogOptions& options = {}) {
     const WrittenLog log(text, "flight.csv");
     const std::string error = error_of([&] { return log.read(options); });
     const std::size_t place = error.find("flight.csv:");
@@ -48,6 +48,7 @@ TEST_CASE("Files of ulog2csv are tables of one flight: times in microseconds, no
     REQUIRE(log.attitude.rows() == 2);
     CHECK(log.attitude.t_s[0] == Approx(1));
     CHECK(log.files.size() == 2);
+    CHECK(log.remarks.empty());
 }
 
 TEST_CASE("A set-point of ulog2csv is not taken for the place of the vehicle") {
@@ -118,16 +119,19 @@ TEST_CASE("Rows without a number leave out their series, and rows that go back i
 }
 
 TEST_CASE("A table that is no log is an error with line and column") {
-    CHECK(error_in("a,b\n1,2\n").starts_with("1: has no column of times"));
-    CHECK(error_in("t,b\n1,2\n").starts_with("1: has nothing of a flight"));
-    CHECK(error_in("t_s,x,y,z\n1,2,3,4\n2,2,oops,4\n").starts_with("3:5: y is 'oops'"));
-    CHECK(error_in("t_s,x,y,z\n1,2,3\n").starts_with("2: "));
+    CHECK(table_error("a,b\n1,2\n").starts_with("1: has no column of times"));
+    CHECK(table_error("t,b\n1,2\n").starts_with("1: has nothing of a flight"));
+    CHECK(table_error("t_s,x,y,z\n1,2,3,4\n2,2,oops,4\n").starts_with("3:5: y is 'oops'"));
+    CHECK(table_error("t_s,x,y,z\n1,2,3\n").starts_with("2: "));
     LogOptions options;
     options.columns = {{"x", "east"}};
-    CHECK(error_in("t_s,x,y,z\n1,2,3,4\n", options).starts_with(" there is no column 'east', which is said to be x"));
+    CHECK(table_error("t_s,x,y,z\n1,2,3,4\n", options).find("there is no column east to be x") != std::string::npos);
+    options.columns = {{"yaw", "heading"}};
+    CHECK(table_error("t_s,x,y,z\n1,2,3,4\n", options)
+              .starts_with(" there is no column 'heading', which is said to be yaw"));
     options.columns = {{"north", "x"}};
-    CHECK(error_in("t_s,x,y,z\n1,2,3,4\n", options).find("there is no such signal") != std::string::npos);
-    CHECK(error_in("").find("holds no table") != std::string::npos);
+    CHECK(table_error("t_s,x,y,z\n1,2,3,4\n", options).find("there is no such signal") != std::string::npos);
+    CHECK(table_error("").find("holds no table") != std::string::npos);
 }
 
 TEST_CASE("The unit of times follows from the step between rows") {

@@ -113,7 +113,10 @@ TEST_CASE("Places that the autopilot does not trust are left out") {
         body.add<std::uint64_t>(static_cast<std::uint64_t>(1000 * (i + 1))).add<float>(1).add<float>(2).add<float>(3);
         log.data(0, body.add<std::uint8_t>(i == 1 ? 0 : 1).add<std::uint8_t>(i == 2 ? 0 : 1).text);
     }
-    CHECK(WrittenLog(log.text).read().position_m.rows() == 2);
+    const FlightLog read = WrittenLog(log.text).read();
+    CHECK(read.position_m.rows() == 2);
+    REQUIRE(read.remarks.size() == 1);
+    CHECK(read.remarks[0].starts_with("2 rows of vehicle_local_position (position) are skipped"));
 }
 
 TEST_CASE("A bag holds odometry at the stamps of its headers, with velocities turned into the world, and joints") {

@@ -194,7 +194,7 @@ inline std::string dataflash_of(const LoggedFlight& flight, double full_n) {
         const double yaw = std::atan2(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
         const auto centidegrees = [](double rad) { return std::lround(rad * 18000 / 3.14159265358979323846); };
         const auto heading = static_cast<std::uint16_t>((centidegrees(yaw) + 36000) % 36000);
-        for (const std::uint8_t core : {0, 1}) {
+        for (const std::uint8_t core : {std::uint8_t{0}, std::uint8_t{1}}) {
             const float off = core == 0 ? 0 : 100;
             Bytes ekf;
             ekf.add<std::uint64_t>(t).add<std::uint8_t>(core);
