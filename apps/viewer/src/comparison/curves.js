@@ -80,29 +80,29 @@ function make_key(lines, others) {
                                         name)));
 }
 
-const key_lines = [["flown", "series-1"], ["planned flight", "series-0"], ["reference", "series-2"]];
+const key_lines = [["flown", "series-1"], ["planned flight", "series-0"]];
 
-/** Where the vehicle was, axis by axis, with the envelope of the worlds. */
+/** How far the vehicle was from its reference, axis by axis, with the envelope of the worlds. */
 export function make_places({series, findings}) {
     const shown = axes.map((_, axis) => axis).filter((axis) => !is_flat(series, axis));
     const panels = shown.map((axis) => {
+        const off = (values) => values.map((value, i) => value - series.reference_m[axis][i]);
         const outside = (findings.envelope?.outside ?? []).filter((time) => time.axis === axes[axis]);
-        const band = series.low_m ? {low: series.low_m[axis], high: series.high_m[axis]} : undefined;
+        const band = series.low_m ? {low: off(series.low_m[axis]), high: off(series.high_m[axis])} : undefined;
         return make_curves(
-            axes[axis], "m", series.t_s,
+            `${axes[axis]} from the reference`, "m", series.t_s,
             [
-                {name: "reference", values: series.reference_m[axis], style: "series-2"},
-                {name: "planned flight", values: series.planned_m[axis], style: "series-0"},
-                {name: "flown", values: series.flown_m[axis], style: "series-1"}
+                {name: "planned flight", values: off(series.planned_m[axis]), style: "series-0"},
+                {name: "flown", values: off(series.flown_m[axis]), style: "series-1"}
             ],
             band, {outside});
     });
     const note = findings.envelope ?
         `The band spans where the vehicle is in ${findings.envelope.worlds} worlds of the plan's uncertainty; red marks ` +
             "times at which the flown vehicle is outside of it, most of all along that axis." :
-        "Places in the axes of the problem.";
+        "Along the axes of the problem.";
     const areas = findings.envelope ? [["worlds", "band-key"], ["outside", "outside-key"]] : [];
-    const figure = make_figure("places", "Where the vehicle was", note, panels, make_key(key_lines, areas));
+    const figure = make_figure("places", "Tracking, axis by axis", note, panels, make_key(key_lines, areas));
     figure.classList.add("wide");
     return figure;
 }
@@ -120,7 +120,7 @@ export function make_errors({series}) {
                          {name: "flown", values: distances(series.flown_m), style: "series-1"}
                      ],
                      undefined, {from_zero: true})],
-        make_key(key_lines.slice(0, 2), []));
+        make_key(key_lines, []));
 }
 
 /** null without obstacles. */
@@ -138,7 +138,7 @@ export function make_clearance({series, findings}) {
                          {name: "flown", values: series.clearance_m, style: "series-1"}
                      ],
                      undefined, {from_zero: true, limit: {name: "safety margin", value: margin_m}})],
-        make_key(key_lines.slice(0, 2), []));
+        make_key(key_lines, []));
 }
 
 /** null without commands of rotors in the log. */
@@ -155,5 +155,5 @@ export function make_thrust({series, findings}) {
             {name: "planned flight", values: series.planned_thrust_n, style: "series-0"},
             {name: "flown", values: series.thrust_n, style: "series-1"}
         ])],
-        make_key([...key_lines.slice(0, 2), ["in free air", "series-2"]], []));
+        make_key([...key_lines, ["in free air", "series-2"]], []));
 }
