@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "downwash/base/line_errors.hpp"
-#include "downwash/logs/log_reader.hpp"
+#include "downwash/logs/log_options.hpp"
 
 namespace downwash::logs {
 

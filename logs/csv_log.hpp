@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "downwash/logs/flight_log.hpp"
-#include "downwash/logs/log_reader.hpp"
+#include "downwash/logs/log_options.hpp"
 
 namespace downwash::logs {
 

@@ -4,7 +4,7 @@
 
 #include "downwash/logs/flight_log.hpp"
 #include "downwash/logs/log_bytes.hpp"
-#include "downwash/logs/log_reader.hpp"
+#include "downwash/logs/log_options.hpp"
 
 namespace downwash::logs {
 
