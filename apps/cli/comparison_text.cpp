@@ -28,6 +28,15 @@ Json json_of(const ErrorFigures& errors) {
             {"max_at_s", errors.max_at_s}};
 }
 
+Json json_of(const AngleFigures& angle) {
+    return {{"samples", angle.samples}, {"rms_rad", angle.rms_rad}, {"max_rad", angle.max_rad}};
+}
+
+std::string angle_text(const AngleFigures& angle) {
+    return fmt::format("rms {:.2f} deg, max {:.2f} deg", angle.rms_rad * degrees_per_radian,
+                       angle.max_rad * degrees_per_radian);
+}
+
 Json json_of(const LeastClearance& least) {
     return {{"min_m", finite(least.clearance_m)},
             {"at_s", std::isfinite(least.clearance_m) ? Json(least.at_s) : Json()},
@@ -147,6 +156,11 @@ Json json_of(const ShownComparison& shown, const Json& log) {
     document["planned_outcome"] = comparison.planned_outcome;
     document["tracking"] = json_of(comparison.tracking);
     document["from_planned_flight"] = json_of(comparison.from_planned);
+    document["yaw"] = comparison.yaw ? json_of(*comparison.yaw) : Json();
+    Json& joints = document["joints"] = Json::array();
+    for (const AngleFigures& joint : comparison.joints) {
+        joints.push_back(json_of(joint));
+    }
     Json& phases = document["phases"] = Json::array();
     for (const PhaseFigures& phase : comparison.phases) {
         Json each{{"phase", name_of(phase.phase)},
@@ -215,6 +229,12 @@ std::string text_of(const ShownComparison& shown, const Json& log) {
     text += table_row("tracking", errors_text(comparison.tracking));
     for (const PhaseFigures& phase : comparison.phases) {
         text += table_row("  " + std::string(name_of(phase.phase)), errors_text(phase.errors));
+    }
+    if (comparison.yaw) {
+        text += table_row("  yaw", angle_text(*comparison.yaw));
+    }
+    for (std::size_t i = 0; i < comparison.joints.size(); ++i) {
+        text += table_row(fmt::format("  joint {}", i + 1), angle_text(comparison.joints[i]));
     }
     text += table_row("planned flight", errors_text(comparison.from_planned));
     text += table_row("clearance", clearance_text(comparison.clearance));

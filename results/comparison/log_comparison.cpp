@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "downwash/base/key_error.hpp"
+#include "downwash/scene/space_pose.hpp"
 
 namespace downwash {
 namespace {
@@ -42,6 +44,26 @@ class ErrorSums {
  private:
     ErrorFigures figures_;
     std::array<double, 4> sum_{}, square_{};
+};
+
+class AngleSums {
+ public:
+    void add(double error_rad) {
+        const double turn_rad = 2 * std::numbers::pi;
+        const double size_rad = std::abs(error_rad - turn_rad * std::round(error_rad / turn_rad));
+        ++figures_.samples;
+        square_ += size_rad * size_rad;
+        figures_.max_rad = std::max(figures_.max_rad, size_rad);
+    }
+    [[nodiscard]] AngleFigures figures() const {
+        AngleFigures figures = figures_;
+        figures.rms_rad = std::sqrt(square_ / static_cast<double>(std::max<std::size_t>(1, figures.samples)));
+        return figures;
+    }
+
+ private:
+    AngleFigures figures_;
+    double square_ = 0;
 };
 
 /// The planned flight between its ticks.
@@ -95,6 +117,7 @@ class Comparison {
         result_.has_joints = !log_.joints_rad.empty() && log_.joints_rad.width >= plan_.joints();
         phases_ = phases_of(planned_);
         track();
+        track_angles();
         add_rows();
         find_least_clearances();
         weigh_thrust();
@@ -131,6 +154,30 @@ class Comparison {
                 result_.phases.push_back({phase, static_cast<double>(ticks) * planned_.tick_s,
                                           by_phase[static_cast<std::size_t>(phase)].figures(), infinite});
             }
+        }
+    }
+
+    void track_angles() {
+        AngleSums yaw;
+        std::vector<AngleSums> joints(result_.has_joints ? plan_.joints() : 0);
+        LogCursor attitude(log_.attitude), angles(log_.joints_rad);
+        for (const PlannedRow& row : planned_.rows) {
+            const double log_s = result_.alignment.log_time(row.t_s);
+            if (const auto at = attitude.place(log_s)) {
+                const Matrix3 rotation = rotation_of({attitude.number(*at, 0), attitude.number(*at, 1),
+                                                      attitude.number(*at, 2), attitude.number(*at, 3)});
+                yaw.add(std::atan2(rotation[1][0], rotation[0][0]) + result_.alignment.yaw_rad - row.reference_yaw_rad);
+            }
+            const auto at = angles.place(log_s);
+            for (std::size_t i = 0; at && i < joints.size(); ++i) {
+                joints[i].add(angles.number(*at, i) - row.reference_joints_rad[i]);
+            }
+        }
+        if (result_.has_attitude && !plan_.is_in_plane()) {
+            result_.yaw = yaw.figures();
+        }
+        for (const AngleSums& joint : joints) {
+            result_.joints.push_back(joint.figures());
         }
     }
 

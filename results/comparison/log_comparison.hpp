@@ -24,6 +24,12 @@ struct ErrorFigures {
     double max_at_s = 0;            ///< of the distance, time of the plan
 };
 
+/// Errors of an angle from its reference, over the whole plan.
+struct AngleFigures {
+    std::size_t samples = 0;
+    double rms_rad = 0, max_rad = 0;
+};
+
 /// The errors while a plan is in a phase.
 struct PhaseFigures {
     FlightPhase phase = FlightPhase::transit;
@@ -79,6 +85,8 @@ struct LogComparison {
     double duration_s = 0;             ///< of the planned flight
     ErrorFigures tracking;             ///< from the reference
     ErrorFigures from_planned;         ///< from the flight that simulation plans
+    std::optional<AngleFigures> yaw;   ///< empty without an attitude in the log, and in a plane
+    std::vector<AngleFigures> joints;  ///< one for each, if the log has them
     std::vector<PhaseFigures> phases;  ///< those that the plan has, in the order of FlightPhase
     LeastClearance clearance, planned_clearance;
     std::optional<ThrustFigures> thrust;            ///< empty without commands of rotors

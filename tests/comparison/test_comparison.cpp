@@ -100,6 +100,9 @@ TEST_CASE("A flight in space is found again in ULog, DataFlash and CSV, in anoth
         CHECK(comparison.from_planned.rms_m[3] < 0.005);
         CHECK(comparison.has_attitude);
         CHECK(comparison.has_joints == (name == "flight.bag"));
+        CHECK(comparison.joints.size() == (comparison.has_joints ? 3 : 0));
+        REQUIRE(comparison.yaw);
+        CHECK(comparison.yaw->rms_rad < 0.02);
         CHECK(comparison.clearance.clearance_m == Approx(comparison.planned_clearance.clearance_m).margin(0.01));
         CHECK(comparison.thrust.has_value() == (name == "flight.ulg" || name == "flight.bin"));
         if (comparison.thrust) {
@@ -116,6 +119,17 @@ TEST_CASE("A log of the very same flight has no error from it, and its own error
         compare(read(ulog_of(in_frame(flight, {0, {}, 1, 1}), 20), "flight.ulg"), compared_girder());
     CHECK(comparison.from_planned.max_m[3] < 0.003);
     CHECK(comparison.tracking.max_m[3] == Approx(flown.max_tracking_error_m).margin(0.005));
+    // The yaw of the flight, from its rows.
+    double max_yaw_rad = 0;
+    for (const SpaceFlightRow& row : flown.rows) {
+        const auto& q = row.motion.attitude;
+        const double yaw = std::atan2(2 * (q[0] * q[3] + q[1] * q[2]), 1 - 2 * (q[2] * q[2] + q[3] * q[3]));
+        max_yaw_rad = std::max(max_yaw_rad,
+                               std::abs(std::remainder(yaw - row.reference.position[space::yaw], 6.283185307179586)));
+    }
+    REQUIRE(comparison.yaw);
+    CHECK(comparison.yaw->max_rad == Approx(max_yaw_rad).margin(0.002));
+    CHECK(comparison.joints.empty());
     double samples = 0;
     for (const PhaseFigures& phase : comparison.phases) {
         samples += static_cast<double>(phase.errors.samples);
@@ -186,6 +200,10 @@ TEST_CASE("A flight in a plane is compared in its plane, from our own trajectory
     CHECK(own.alignment.yaw_rad == Approx(0).margin(1e-3));
     CHECK(own.from_planned.max_m[3] < 0.003);
     CHECK(own.has_joints);
+    CHECK_FALSE(own.yaw);
+    REQUIRE(own.joints.size() == 1);
+    CHECK(own.joints[0].max_rad > 0);
+    CHECK(own.joints[0].max_rad < 0.1);
     CHECK(own.clearance.clearance_m == Approx(flight.min_clearance_m).margin(0.003));
     REQUIRE(own.thrust);
     CHECK(own.thrust->unit_n == 1);
