@@ -10,6 +10,7 @@ cd "${1:-$(dirname "${BASH_SOURCE[0]}")/..}"
 # everything.
 layers='
 base:
+logs:                  base
 scene:                 base
 dynamics:              base
 aeromap/effects:       base
@@ -26,6 +27,7 @@ planner:               base scene dynamics effects grids aeromap controllers sim
 planner/ompl:          base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners planner
 results:               base scene dynamics effects grids aeromap controllers simulation problems search planner
 results/mavlink:       base
+results/comparison:    base logs scene dynamics effects grids aeromap controllers simulation problems
 results/exports:       base scene dynamics effects grids aeromap controllers simulation problems search planner results mavlink
 judge:                 base scene dynamics effects grids aeromap controllers simulation problems results
 apps/report:           base scene dynamics effects grids aeromap controllers simulation problems search planner results

@@ -2,6 +2,7 @@
 
 #include "downwash/cli/bench_commands.hpp"
 #include "downwash/cli/commands.hpp"
+#include "downwash/cli/compare_command.hpp"
 #include "downwash/cli/export_command.hpp"
 #include "downwash/cli/fit_commands.hpp"
 #include "downwash/cli/program.hpp"
@@ -32,6 +33,7 @@ void add_all(Command program, Action& action) {
     add_replan(program, action);
     add_execute(program, action);
     add_validate(program, action, nullptr);
+    add_compare(program, action, nullptr);
     add_aeromap(program, action);
     add_bench(program, action, {});
     add_study(program, action, {});

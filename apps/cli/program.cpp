@@ -45,6 +45,7 @@ struct Part {
 constexpr std::array parts{
     Part{"aeromap", "libceres-dev"},
     Part{"bench", "libsqlite3-dev"},
+    Part{"compare", ""},
     Part{"export", "libgeographiclib-dev"},
     Part{"robot", "liburdfdom-dev, libsdformat-dev, libmujoco-dev and libpugixml-dev"},
     Part{"study", "libsqlite3-dev"},

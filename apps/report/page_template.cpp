@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "downwash/report/campaign_page.hpp"
+#include "downwash/report/comparison_page.hpp"
 
 #ifdef DOWNWASH_PAGES
 #include "downwash/base/embedded_file.hpp"
@@ -11,6 +12,7 @@
 DOWNWASH_EMBED_FILE(downwash_run_page, DOWNWASH_PAGES "/run.html");
 DOWNWASH_EMBED_FILE(downwash_space_page, DOWNWASH_PAGES "/space.html");
 DOWNWASH_EMBED_FILE(downwash_campaign_page, DOWNWASH_PAGES "/campaign.html");
+DOWNWASH_EMBED_FILE(downwash_comparison_page, DOWNWASH_PAGES "/comparison.html");
 DOWNWASH_EMBED_FILE(downwash_validation_page, DOWNWASH_PAGES "/validation.html");
 #else
 #define DOWNWASH_EMBEDDED_FILE(NAME) std::string_view()
@@ -28,6 +30,10 @@ std::string_view space_page_template() noexcept {
 
 std::string_view campaign_page_template() noexcept {
     return DOWNWASH_EMBEDDED_FILE(downwash_campaign_page);
+}
+
+std::string_view comparison_page_template() noexcept {
+    return DOWNWASH_EMBEDDED_FILE(downwash_comparison_page);
 }
 
 std::string_view validation_page_template() noexcept {
@@ -58,6 +64,10 @@ std::string filled_page(std::string_view page, const std::string& data) {
         throw std::logic_error("the page has no place for its data");
     }
     return filled.replace(place, gap.size(), data);
+}
+
+std::string comparison_page(const std::string& comparison) {
+    return filled_page(comparison_page_template(), page_data(nlohmann::ordered_json::parse(comparison)));
 }
 
 std::string campaign_page(const std::string& figures) {

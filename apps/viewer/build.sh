@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Builds the pages, each an HTML file without data: DIR/run.html, space.html, campaign.html and validation.html. Usage: apps/viewer/build.sh DIR
+# Builds the pages, each an HTML file without data: DIR/run.html, space.html, campaign.html, comparison.html
+# and validation.html. Usage: apps/viewer/build.sh DIR
 # Needs esbuild ($ESBUILD, or the one on the path), node-d3 and libjs-three of Debian; the same sources and packages give
 # the same bytes.
 set -euo pipefail
@@ -42,6 +43,7 @@ page() {
 mkdir -p "$out"
 : >"$parts/extra"
 page campaign 'Downwash campaign' src/campaign/main.js src/campaign/page.css
+page comparison 'Downwash comparison' src/comparison/main.js src/comparison/page.css
 page validation 'Downwash validation' src/validation/main.js src/validation/page.css
 
 # view3d SCRIPT: a bundle with three.js, packed, into $parts/extra.

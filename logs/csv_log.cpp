@@ -1,0 +1,312 @@
+#include "downwash/logs/csv_log.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "downwash/base/angles.hpp"
+#include "downwash/base/csv_reader.hpp"
+#include "downwash/base/line_errors.hpp"
+#include "downwash/base/quantile.hpp"
+#include "downwash/base/text.hpp"
+#include "downwash/logs/csv_columns.hpp"
+#include "downwash/logs/rotation.hpp"
+
+namespace downwash::logs {
+namespace {
+
+constexpr std::size_t max_rows = 20'000'000, max_columns = 2000;
+
+/// The columns of one series.
+struct Group {
+    LogSeries* series;
+    std::vector<std::optional<SignalColumn>> columns;  ///< empty: that number is 0
+};
+
+bool is_missing(std::string_view cell) {
+    return cell.empty() || is_same_word(cell, "nan");
+}
+
+/// Reads the rows of a table into the series of a log.
+class CsvLog {
+ public:
+    CsvLog(std::string_view text, const std::string& file, const LogOptions& options)
+        : file_(file),
+          options_(options),
+          errors_(file),
+          csv_(text, errors_, {max_rows, max_columns}),
+          columns_(csv_.names(), options.columns, file) {}
+
+    CsvFlight read() {
+        check_declared();
+        log_.files = {file_};
+        log_.format = LogFormat::csv;
+        const auto time = columns_.find("t");
+        if (!time) {
+            errors_.add(csv_.header_line(), "has no column of times in '" + excerpt(joined(csv_.names(), ", ")) +
+                                                "': expected t_s, time or timestamp, or --column t=NAME");
+        }
+        find_groups();
+        errors_.throw_any();
+        read_rows(*time);
+        errors_.throw_any();
+        scale_times(*time);
+        turn_angles();
+        choose_rotor_unit();
+        choose_axes();
+        if (late_rows_ > 0) {
+            log_.remarks.push_back(file_ + ": " + std::to_string(late_rows_) +
+                                   " rows are skipped, since their times are not later than those before");
+        }
+        return {std::move(log_), csv_.names()};
+    }
+
+ private:
+    void check_declared() {
+        for (const auto& [signal, column] : options_.columns) {
+            if (!is_csv_signal(signal)) {
+                errors_.add(0, "--column " + excerpt(signal) + "=" + excerpt(column) +
+                                   ": there is no such signal; expected t, x, y, z, vx, vy, vz, qw, qx, qy, qz, roll, "
+                                   "pitch, yaw, wx, wy, wz, ax, ay, az, set_x, set_y, set_z, joint_1, joint_rate_1 or "
+                                   "rotor_1");
+            }
+        }
+        errors_.throw_any();
+    }
+
+    /// A series is there if its first and last columns are; one between may be missing in a vertical plane.
+    void add_group(LogSeries& series, std::initializer_list<std::string_view> signals, bool is_whole) {
+        std::vector<std::optional<SignalColumn>> columns;
+        for (const std::string_view signal : signals) {
+            columns.push_back(columns_.find(signal));
+        }
+        const auto is_there = [](const auto& column) { return column.has_value(); };
+        if (is_whole ? !std::ranges::all_of(columns, is_there) : !std::ranges::any_of(columns, is_there)) {
+            return;
+        }
+        add(series, std::move(columns));
+    }
+
+    void add_numbered(LogSeries& series, std::string_view beginning) {
+        const std::vector<SignalColumn> found = columns_.find_numbered(beginning);
+        if (!found.empty()) {
+            add(series, {found.begin(), found.end()});
+        }
+    }
+
+    void add(LogSeries& series, std::vector<std::optional<SignalColumn>> columns) {
+        series.width = columns.size();
+        std::string names;
+        for (const auto& column : columns) {
+            if (column) {
+                names += (names.empty() ? "" : ", ") + csv_.names()[column->column];
+            }
+        }
+        series.source = std::filesystem::path(file_).filename().string() + ": " + names;
+        groups_.push_back({&series, std::move(columns)});
+    }
+
+    void find_groups() {
+        const bool is_planar = columns_.find("x") && !columns_.find("y") && columns_.find("z");
+        add_group(log_.position_m, {"x", "y", "z"}, !is_planar);
+        add_group(log_.velocity_m_s, {"vx", "vy", "vz"}, !is_planar);
+        add_group(log_.attitude, {"qw", "qx", "qy", "qz"}, true);
+        if (groups_.empty() || groups_.back().series != &log_.attitude) {
+            add_group(angles_, {"roll", "pitch", "yaw"}, !is_planar);
+        }
+        add_group(log_.body_rates_rad_s, {"wx", "wy", "wz"}, !is_planar);
+        add_group(log_.specific_force_m_s2, {"ax", "ay", "az"}, true);
+        add_group(log_.setpoint_m, {"set_x", "set_y", "set_z"}, !is_planar);
+        add_numbered(log_.joints_rad, "joint_");
+        add_numbered(log_.joint_rates_rad_s, "joint_rate_");
+        add_numbered(log_.rotor_commands, "rotor_");
+    }
+
+    void read_rows(const SignalColumn& time) {
+        std::vector<double> row;
+        while (csv_.next()) {
+            if (is_missing(csv_.cell(time.column))) {
+                continue;
+            }
+            const auto t = csv_.number(time.column);
+            if (!t) {
+                continue;
+            }
+            bool is_late = false;
+            for (const Group& group : groups_) {
+                row.clear();
+                for (const auto& column : group.columns) {
+                    if (!column) {
+                        row.push_back(0);
+                    } else if (!is_missing(csv_.cell(column->column))) {
+                        row.push_back(csv_.number(column->column).value_or(0));
+                    }
+                }
+                is_late |= row.size() == group.columns.size() && !group.series->add(*t, row);
+            }
+            late_rows_ += is_late ? 1 : 0;
+        }
+        const auto has_rows = [](const Group& group) { return !group.series->empty(); };
+        if (std::ranges::none_of(groups_, has_rows)) {
+            std::string missing;
+            for (const auto& [signal, column] : options_.columns) {
+                missing += csv_.find(column) ? "" : "; there is no column " + excerpt(column) + " to be " + signal;
+            }
+            errors_.add(csv_.header_line(), "has nothing of a flight in '" + excerpt(joined(csv_.names(), ", ")) +
+                                                "': expected columns such as x, y, z, or --column x=NAME for each of "
+                                                "them" +
+                                                missing);
+        }
+    }
+
+    void scale_times(const SignalColumn& time) {
+        const double unit_s = options_.time_unit_s ? *options_.time_unit_s : time_unit_s(time);
+        for (const Group& group : groups_) {
+            for (double& t : group.series->t_s) {
+                t *= unit_s;
+            }
+        }
+    }
+
+    /// The unit that the name of the column tells, or that in which rows are a likely time apart.
+    double time_unit_s(const SignalColumn& time) {
+        const std::string& name = csv_.names()[time.column];
+        if (name.ends_with("_s")) {
+            return 1;
+        }
+        if (name.ends_with("US") || name.ends_with("_us") || (name == "timestamp" && columns_.is_of_ulog())) {
+            return 1e-6;
+        }
+        if (name == "%time" || name.ends_with("_ns")) {
+            return 1e-9;
+        }
+        if (name.ends_with("_ms")) {
+            return 1e-3;
+        }
+        std::vector<double> steps;
+        for (const Group& group : groups_) {
+            for (std::size_t i = 1; i < group.series->rows() && i < 10'000; ++i) {
+                steps.push_back(group.series->t_s[i] - group.series->t_s[i - 1]);
+            }
+        }
+        const double step = steps.empty() ? 0 : quantile(std::move(steps), 0.5);
+        struct Unit {
+            double below, unit_s;
+            const char* name;
+        };
+        // Rows are from 0.2 ms to half a second apart.
+        constexpr std::array units{Unit{0.9, 1, "seconds"}, Unit{500, 1e-3, "milliseconds"},
+                                   Unit{5e5, 1e-6, "microseconds"}, Unit{INFINITY, 1e-9, "nanoseconds"}};
+        const auto unit = std::ranges::find_if(units, [step](const Unit& each) { return step < each.below; });
+        log_.remarks.push_back(file_ + ": the times in " + excerpt(name) + " are taken for " + unit->name +
+                               "; --time-unit says otherwise");
+        return unit->unit_s;
+    }
+
+    [[nodiscard]] double angle_unit_rad(const LogSeries& angles, std::string_view first_name, const char* what) {
+        if (options_.angles_in_degrees) {
+            return *options_.angles_in_degrees ? 1 / degrees_per_radian : 1;
+        }
+        if (first_name.ends_with("_rad") || first_name.ends_with("_deg")) {
+            return first_name.ends_with("_rad") ? 1 : 1 / degrees_per_radian;
+        }
+        constexpr double beyond_radians = 6.5;
+        const bool is_in_degrees =
+            std::ranges::any_of(angles.numbers, [](double angle) { return std::abs(angle) > beyond_radians; });
+        log_.remarks.push_back(file_ + ": the angles of the " + what + " are taken for " +
+                               (is_in_degrees ? "degrees" : "radians") + "; --angles says otherwise");
+        return is_in_degrees ? 1 / degrees_per_radian : 1;
+    }
+
+    std::string_view name_in(const LogSeries& series) const {
+        const auto group = std::ranges::find(groups_, &series, &Group::series);
+        for (const auto& column : group->columns) {
+            if (column) {
+                return csv_.names()[column->column];
+            }
+        }
+        return {};
+    }
+
+    void turn_angles() {
+        if (!log_.joints_rad.empty()) {
+            const double unit = angle_unit_rad(log_.joints_rad, name_in(log_.joints_rad), "joints");
+            for (double& angle : log_.joints_rad.numbers) {
+                angle *= unit;
+            }
+            for (double& rate : log_.joint_rates_rad_s.numbers) {
+                rate *= unit;
+            }
+        }
+        if (angles_.empty()) {
+            return;
+        }
+        const double unit = angle_unit_rad(angles_, name_in(angles_), "attitude");
+        log_.attitude.width = 4;
+        log_.attitude.source = angles_.source;
+        for (std::size_t i = 0; i < angles_.rows(); ++i) {
+            const auto row = angles_.row(i);
+            log_.attitude.add(angles_.t_s[i], quaternion_of_angles(unit * row[0], unit * row[1], unit * row[2]));
+        }
+    }
+
+    void choose_rotor_unit() {
+        if (log_.rotor_commands.empty()) {
+            return;
+        }
+        const std::string_view name = name_in(log_.rotor_commands);
+        if (name.ends_with("_n")) {
+            log_.rotor_unit = RotorUnit::newton;
+            return;
+        }
+        const double most = *std::ranges::max_element(log_.rotor_commands.numbers);
+        log_.rotor_unit = most > 500 ? RotorUnit::microseconds : most > 1.05 ? RotorUnit::newton : RotorUnit::share;
+        log_.remarks.push_back(file_ + ": the rotor commands are taken for " +
+                               (most > 500    ? "pulse widths in microseconds"
+                                : most > 1.05 ? "thrusts in newton"
+                                              : "shares of the full command"));
+    }
+
+    void choose_axes() {
+        if (options_.axes) {
+            log_.recorded_axes = *options_.axes;
+            log_.axes_source = AxesSource::declared;
+        } else if (const auto axes = columns_.axes()) {
+            log_.recorded_axes = *axes;
+            log_.axes_source = AxesSource::format;
+        } else {
+            log_.recorded_axes = guessed_axes();
+            log_.axes_source = AxesSource::guessed;
+        }
+    }
+
+    /// Vehicles fly above where they count from.
+    [[nodiscard]] LogAxes guessed_axes() const {
+        std::vector<double> heights;
+        for (std::size_t i = 0; i < log_.position_m.rows(); ++i) {
+            heights.push_back(log_.position_m.row(i)[2]);
+        }
+        return !heights.empty() && quantile(std::move(heights), 0.5) < 0 ? LogAxes::down : LogAxes::up;
+    }
+
+    const std::string& file_;
+    const LogOptions& options_;
+    LineErrors errors_;
+    CsvReader csv_;
+    CsvColumns columns_;
+    FlightLog log_;
+    LogSeries angles_;
+    std::vector<Group> groups_;
+    std::size_t late_rows_ = 0;
+};
+
+}  // namespace
+
+CsvFlight read_csv_log(std::string_view text, const std::string& file, const LogOptions& options) {
+    return CsvLog(text, file, options).read();
+}
+
+}  // namespace downwash::logs
