@@ -10,6 +10,7 @@
 
 DOWNWASH_EMBED_FILE(downwash_run_page, DOWNWASH_PAGES "/run.html");
 DOWNWASH_EMBED_FILE(downwash_space_page, DOWNWASH_PAGES "/space.html");
+DOWNWASH_EMBED_FILE(downwash_robot_page, DOWNWASH_PAGES "/robot.html");
 DOWNWASH_EMBED_FILE(downwash_campaign_page, DOWNWASH_PAGES "/campaign.html");
 DOWNWASH_EMBED_FILE(downwash_validation_page, DOWNWASH_PAGES "/validation.html");
 #else
@@ -24,6 +25,10 @@ std::string_view run_page_template() noexcept {
 
 std::string_view space_page_template() noexcept {
     return DOWNWASH_EMBEDDED_FILE(downwash_space_page);
+}
+
+std::string_view robot_page_template() noexcept {
+    return DOWNWASH_EMBEDDED_FILE(downwash_robot_page);
 }
 
 std::string_view campaign_page_template() noexcept {

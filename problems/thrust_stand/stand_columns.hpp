@@ -9,7 +9,7 @@
 
 #include "downwash/base/csv_reader.hpp"
 #include "downwash/base/line_errors.hpp"
-#include "downwash/thrust_stand/thrust_stand.hpp"
+#include "downwash/thrust_stand/stand_results.hpp"
 
 namespace downwash::thrust_stand {
 

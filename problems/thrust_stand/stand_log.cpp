@@ -26,7 +26,8 @@ double number_at(CsvReader& csv, std::size_t column) {
             return *number;
         }
     }
-    return csv.number(column).value_or(nothing);
+    constexpr double most = 1e15;  // time stamps in us, and squares of all else are finite
+    return csv.number(column, -most, most).value_or(nothing);
 }
 
 /// Of several columns of one quantity, such as two speeds, the first that is ever above 0.

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "downwash/thrust_stand/thrust_stand.hpp"
+#include "downwash/thrust_stand/stand_results.hpp"
 
 namespace downwash::thrust_stand {
 
