@@ -20,6 +20,7 @@ aeromap/fitting:       base effects
 controllers:           base dynamics
 simulation:            base scene dynamics effects grids aeromap controllers
 problems:              base scene dynamics effects grids aeromap controllers simulation
+problems/thrust_stand: base
 problems/robot_import: base scene dynamics effects grids aeromap controllers simulation problems
 planner/search:        base scene dynamics effects grids aeromap controllers simulation problems
 planner/ompl_planners: base scene dynamics effects grids aeromap controllers simulation problems search

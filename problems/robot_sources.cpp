@@ -27,7 +27,8 @@ constexpr std::string_view of_urdf =
     "A URDF has no rotors' thrust, power and lag, and no gains. docs/robot_files.md has an example.\n";
 
 constexpr std::string_view of_thrust_stand =
-    "Of a thrust stand's table come two keys of a robot file, and a step of its throttle gives a third:\n"
+    "`downwash robot thrust DATA.csv` computes the keys of a rotor from tables and logs of a thrust stand "
+    "(docs/robot_files.md). By hand, two keys come of a table, and a step of its throttle gives a third:\n"
     "  rotors.max_thrust_n               greatest thrust of one rotor [N]; gram-force times 0.00980665\n"
     "  rotors.power_coefficient_w_n1p5   power [W] over thrust [N] to the 1.5, near the thrust of a hover\n"
     "  rotors.time_constant_s            time in which thrust comes 63 % of the way to a new command [s]\n"

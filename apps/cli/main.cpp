@@ -24,6 +24,13 @@ void add_aeromap(Command program, Action& action) {
     add_aeromap_hold(aeromap, action);
 }
 
+void add_robot(Command program, Action& action) {
+    Command robot = add_robot_group(program);
+    add_robot_import(robot, action, nullptr);
+    add_robot_show(robot, action, show_robot_file);
+    add_robot_thrust(robot, action);
+}
+
 /// All commands, in the order of the help.
 void add_all(Command program, Action& action) {
     add_init(program, action);
@@ -39,7 +46,7 @@ void add_all(Command program, Action& action) {
     add_study(program, action, {});
     add_report(program, action);
     add_export(program, action, nullptr);
-    add_robot_import(add_robot_group(program), action, nullptr);
+    add_robot(program, action);
     add_margins(program, action);
     add_planners(program, action);
     add_manual(program, action);

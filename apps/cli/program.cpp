@@ -159,7 +159,11 @@ ExitCode run(std::span<char*> words, void (*add_commands)(Command program, Actio
     if (!end && !action) {
         execute_part(words);
     }
-    return checked_output(end ? *end : action());
+    try {
+        return checked_output(end ? *end : action());
+    } catch (const LeftToPart&) {
+        execute_part(words);
+    }
 }
 
 /// Prints errors, each line with the name of the program.

@@ -7,8 +7,12 @@
 
 namespace downwash::cli {
 
-/// Reads a command line, does what it asks for, prints errors. A given command without an action is left to the program
-/// of an optional component, which stands beside this one: `downwash bench` executes downwash-bench.
+/// What an action throws that the program of an optional component has to do, with the same words.
+struct LeftToPart {};
+
+/// Reads a command line, does what it asks for, prints errors. A given command without an action, or one that
+/// throws LeftToPart, is left to the program of an optional component, which stands beside this one: `downwash bench`
+/// executes downwash-bench.
 /// @param words the name of the program, then its arguments   @return the exit code
 [[nodiscard]] int run_program(std::span<char*> words, void (*add_commands)(Command program, Action& action));
 

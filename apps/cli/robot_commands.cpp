@@ -5,7 +5,8 @@
 namespace downwash::cli {
 
 Command add_robot_group(Command program) {
-    Command robot = program.add_command("robot", "Make robot files from those of other programs");
+    Command robot = program.add_command(
+        "robot", "Make robot files from those of other programs and of thrust stands, and show robots");
     robot.require_command();
     return robot;
 }
@@ -55,6 +56,53 @@ void add_robot_import(Command robot, Action& action, ExitCode (*run)(const Robot
         .add_option("--spin S", given.spins,
                     "how each rotor turns, in the order of the file: 1 counterclockwise from above, -1 clockwise")
         .values(1, 64);
+    add_json(command, given.as_json);
+}
+
+void add_robot_show(Command robot, Action& action, ExitCode (*run)(const RobotShowArguments&)) {
+    auto [command, given] = add_command(robot, action, "show",
+                                        "Show a robot: its masses, centres of mass, rotors with their spins and shares "
+                                        "of thrust in a hover, and reach; "
+                                        "with -o as a page in three dimensions",
+                                        run);
+    command.add_option("ROBOT", given.robot, "robot file, or a URDF, SDF or MJCF to import as `robot import` does")
+        .required()
+        .offers_files({".yaml", ".urdf", ".sdf", ".xml"});
+    add_out(command, "FILE", given.out, "the page, .html");
+    add_json(command, given.as_json);
+}
+
+void add_robot_thrust(Command robot, Action& action) {
+    auto [command, given] = add_command(
+        robot, action, "thrust",
+        "Compute a rotor's keys of a robot file from tables and logs of a thrust stand: thrust limits, thrust "
+        "coefficient, torque ratio, power coefficient, lag, and how much they scatter",
+        thrust_of_stand);
+    command
+        .add_option(
+            "DATA", given.files,
+            "delimited text with a thrust, such as 'Thrust (gf)', and any of throttle, torque, speed, voltage, "
+            "current, power and time, or with CT, CP and RPM; several files of one rotor, or of equal ones, are "
+            "taken together")
+        .required()
+        .offers_files({".csv", ".tsv", ".txt"});
+    add_out(command, "FILE", given.out, "the keys, .yaml, to be put into a robot file; default: standard output");
+    command.add_option("--radius-m M", given.radius_m, "radius of the rotor, for C_T and for files with coefficients")
+        .positive();
+    command.add_option("--air-density RHO", given.air_density, "density of the air [kg/m3]")
+        .in_range(0.1, 10.0)
+        .shows_default();
+    command
+        .add_option("--hover-n N", given.hover_n,
+                    "take the power coefficient near this thrust of one rotor; default: over all thrusts")
+        .positive();
+    command
+        .add_option("--column QUANTITY=NAME", given.columns,
+                    "the column that holds a quantity, such as thrust=Schub; may be repeated")
+        .repeated();
+    command
+        .add_option("--unit QUANTITY=UNIT", given.units, "the unit of a quantity, such as thrust=gf; may be repeated")
+        .repeated();
     add_json(command, given.as_json);
 }
 

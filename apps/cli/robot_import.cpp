@@ -12,9 +12,8 @@
 #include "downwash/cli/output.hpp"
 #include "downwash/cli/robot_commands.hpp"
 #include "downwash/cli/usage_error.hpp"
-#include "downwash/dynamics/plant_model.hpp"
+#include "downwash/report/shown_robot.hpp"
 #include "downwash/simulation/space_robot_facts.hpp"
-#include "downwash/simulation/space_statics.hpp"
 
 namespace downwash::cli {
 namespace {
@@ -59,14 +58,10 @@ ImportSettings settings_of(const RobotImportArguments& given) {
     return settings;
 }
 
-/// Thrust of each rotor at a level hover with all joints at zero, over its greatest.
-std::vector<double> hover_shares(const SpaceRobot& robot) {
-    const std::vector<double> zero(robot.links.size(), 0);
-    std::vector<double> shares = thrust_shares(robot.plant, center_of_mass_m(robot, arm_pose(robot, zero)));
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-        shares[k] *= robot.mass_kg() * standard_gravity_m_s2 / robot.max_thrust_n[k];
+void print_warnings(const std::vector<LocatedError>& warnings) {
+    for (const LocatedError& warning : warnings) {
+        print_warning(warning);
     }
-    return shares;
 }
 
 }  // namespace
@@ -76,11 +71,9 @@ ExitCode import_robot_file(const RobotImportArguments& given) {
     require_writable_result(given.out, "--out");
     const ImportedRobot imported = import_robot(given.file, settings);
     write_result(given.out, imported.yaml, "--out");
-    for (const LocatedError& warning : imported.warnings) {
-        print_warning(warning);
-    }
+    print_warnings(imported.warnings);
     const SpaceRobotFacts facts = space_robot_facts(imported.robot);
-    const std::vector<double> shares = hover_shares(imported.robot);
+    const std::vector<double> shares = hover_shares(shown_robot(imported.robot));
     if (given.as_json) {
         auto warnings = Json::array();
         for (const LocatedError& warning : imported.warnings) {
@@ -110,6 +103,15 @@ ExitCode import_robot_file(const RobotImportArguments& given) {
                                            shares.size(), 100 * facts.hover_share)) +
             table_row("file", given.out));
     return ExitCode::done;
+}
+
+ExitCode show_any_robot(const RobotShowArguments& given) {
+    if (!is_model_file(given.robot)) {
+        return show_robot_file(given);
+    }
+    const ImportedRobot imported = import_robot(given.robot);
+    print_warnings(imported.warnings);
+    return show(shown_robot(imported.robot), given, imported.warnings);
 }
 
 }  // namespace downwash::cli

@@ -6,6 +6,8 @@
 int main(int argc, char** argv) {
     using namespace downwash::cli;
     return run_part("robot", argc, argv, [](Command program, Action& action) {
-        add_robot_import(add_robot_group(program), action, import_robot_file);
+        Command robot = add_robot_group(program);
+        add_robot_import(robot, action, import_robot_file);
+        add_robot_show(robot, action, show_any_robot);
     });
 }

@@ -11,6 +11,7 @@
 
 DOWNWASH_EMBED_FILE(downwash_run_page, DOWNWASH_PAGES "/run.html");
 DOWNWASH_EMBED_FILE(downwash_space_page, DOWNWASH_PAGES "/space.html");
+DOWNWASH_EMBED_FILE(downwash_robot_page, DOWNWASH_PAGES "/robot.html");
 DOWNWASH_EMBED_FILE(downwash_campaign_page, DOWNWASH_PAGES "/campaign.html");
 DOWNWASH_EMBED_FILE(downwash_comparison_page, DOWNWASH_PAGES "/comparison.html");
 DOWNWASH_EMBED_FILE(downwash_validation_page, DOWNWASH_PAGES "/validation.html");
@@ -26,6 +27,10 @@ std::string_view run_page_template() noexcept {
 
 std::string_view space_page_template() noexcept {
     return DOWNWASH_EMBEDDED_FILE(downwash_space_page);
+}
+
+std::string_view robot_page_template() noexcept {
+    return DOWNWASH_EMBEDDED_FILE(downwash_robot_page);
 }
 
 std::string_view campaign_page_template() noexcept {

@@ -8,10 +8,11 @@
 
 namespace downwash {
 
-/// The pages of a run, of a flight in space, of a campaign, of a comparison and of a validation without their data, as
-/// apps/viewer/ builds them; empty if it was not built.
+/// The pages of a run, of a flight in space, of a robot, of a campaign, of a comparison and of a validation without
+/// their data, as apps/viewer/ builds them; empty if it was not built.
 [[nodiscard]] std::string_view run_page_template() noexcept;
 [[nodiscard]] std::string_view space_page_template() noexcept;
+[[nodiscard]] std::string_view robot_page_template() noexcept;
 [[nodiscard]] std::string_view campaign_page_template() noexcept;
 [[nodiscard]] std::string_view comparison_page_template() noexcept;
 [[nodiscard]] std::string_view validation_page_template() noexcept;

@@ -66,41 +66,14 @@ Json bodies_json(const std::vector<SpaceBodyShape>& bodies) {
     return list;
 }
 
-/// Bodies, rotors and arm; each in the frame of what it belongs to.
 Json robot_json(const SpaceRobot& robot) {
-    Json rotors = Json::array(), links = Json::array();
-    for (std::size_t i = 0; i < robot.plant.rotors.size(); ++i) {
-        const SpaceRotor& rotor = robot.plant.rotors[i];
-        rotors.push_back({{"position_m", rotor.position_m},
-                          {"axis", rotor.axis},
-                          {"spin", rotor.spin},
-                          {"min_thrust_n", robot.min_thrust_n[i]},
-                          {"max_thrust_n", robot.max_thrust_n[i]}});
-    }
-    for (std::size_t i = 0; i < robot.links.size(); ++i) {
-        const SpaceLink& link = robot.plant.links[i];
-        const SpaceLinkLimits& limits = robot.links[i];
-        links.push_back(
-            {{"joint_m", link.joint_m},
-             {"axis", link.axis},
-             {"mass_kg", link.body.mass_kg},
-             {"limits_rad", limits.is_limited ? Json({limits.lower_limit_rad, limits.upper_limit_rad}) : Json()},
-             {"max_torque_nm", limits.max_torque_nm},
-             {"bodies", bodies_json(limits.body)}});
-    }
+    Json json = robot_drawing_json(robot);
     const SpaceRobotFacts facts = space_robot_facts(robot);
-    return {{"name", robot.name},
-            {"bodies", bodies_json(robot.body)},
-            {"rotor_radius_m", robot.rotor_radius_m},
-            {"rotors", std::move(rotors)},
-            {"links", std::move(links)},
-            {"end_effector_m", robot.plant.end_effector_m},
-            {"tool_direction", robot.tool_direction},
-            {"facts",
-             {{"mass_kg", facts.mass_kg},
-              {"thrust_to_weight", facts.thrust_to_weight},
-              {"reach_m", facts.reach_m},
-              {"hover_share", facts.hover_share}}}};
+    json["facts"] = {{"mass_kg", facts.mass_kg},
+                     {"thrust_to_weight", facts.thrust_to_weight},
+                     {"reach_m", facts.reach_m},
+                     {"hover_share", facts.hover_share}};
+    return json;
 }
 
 Json start_json(const SpaceStart& start, int joints) {
@@ -193,6 +166,36 @@ double max_tilt_rad(const SpaceController& controller) {
 }
 
 }  // namespace
+
+Json robot_drawing_json(const SpaceRobot& robot) {
+    Json rotors = Json::array(), links = Json::array();
+    for (std::size_t i = 0; i < robot.plant.rotors.size(); ++i) {
+        const SpaceRotor& rotor = robot.plant.rotors[i];
+        rotors.push_back({{"position_m", rotor.position_m},
+                          {"axis", rotor.axis},
+                          {"spin", rotor.spin},
+                          {"min_thrust_n", robot.min_thrust_n[i]},
+                          {"max_thrust_n", robot.max_thrust_n[i]}});
+    }
+    for (std::size_t i = 0; i < robot.links.size(); ++i) {
+        const SpaceLink& link = robot.plant.links[i];
+        const SpaceLinkLimits& limits = robot.links[i];
+        links.push_back(
+            {{"joint_m", link.joint_m},
+             {"axis", link.axis},
+             {"mass_kg", link.body.mass_kg},
+             {"limits_rad", limits.is_limited ? Json({limits.lower_limit_rad, limits.upper_limit_rad}) : Json()},
+             {"max_torque_nm", limits.max_torque_nm},
+             {"bodies", bodies_json(limits.body)}});
+    }
+    return {{"name", robot.name},
+            {"bodies", bodies_json(robot.body)},
+            {"rotor_radius_m", robot.rotor_radius_m},
+            {"rotors", std::move(rotors)},
+            {"links", std::move(links)},
+            {"end_effector_m", robot.plant.end_effector_m},
+            {"tool_direction", robot.tool_direction}};
+}
 
 void add_space_problem(Json& page, const SpaceProblem& problem, const std::optional<VisitOrder>& order) {
     page["scene"] = scene_json(problem);

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the pages, each an HTML file without data: DIR/run.html, space.html, campaign.html, comparison.html
+# Builds the pages, each an HTML file without data: DIR/run.html, space.html, robot.html, campaign.html, comparison.html
 # and validation.html. Usage: apps/viewer/build.sh DIR
 # Needs esbuild ($ESBUILD, or the one on the path), node-d3 and libjs-three of Debian; the same sources and packages give
 # the same bytes.
@@ -62,3 +62,5 @@ view3d src/view3d/app.js
 page run 'Downwash run' src/main.js src/page.css
 view3d src/view3d/space_app.js
 page space 'Downwash flight in space' src/space/main.js src/space/page.css
+view3d src/view3d/robot_app.js
+page robot 'Downwash robot' src/robot/main.js src/robot/page.css

@@ -90,7 +90,16 @@ class Search {
             }
         }
         for (std::size_t j = 0; j < tree_.joints.size(); ++j) {
+            freeze_without_way(static_cast<int>(j));
             freeze_with_leader(static_cast<int>(j));
+        }
+    }
+
+    /// Models of classic Gazebo fix parts by joints with a single place.
+    void freeze_without_way(int j) {
+        const TreeJoint& one = joint(j);
+        if (one.lower && one.upper && *one.lower == *one.upper && !frozen_.contains(j)) {
+            frozen_[j] = *one.lower;
         }
     }
 

@@ -5,7 +5,7 @@
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
-#include "downwash/scene/bounding_box.hpp"
+#include "downwash/robot_import/enclosing_solid.hpp"
 #include "downwash/scene/mesh_file.hpp"
 
 namespace downwash::robot_import {
@@ -32,50 +32,59 @@ bool is_straight(const Matrix3& rotation) {
     });
 }
 
-SpaceBodyShape box_around(const BoundingBox& bounds) {
-    Vector3 size_m = bounds.high_m - bounds.low_m;
-    for (double& edge_m : size_m) {
-        edge_m = std::max(edge_m, 1e-3);  // a sheet
+std::vector<Vector3> corners_of(const Box& box, const RigidTransform& outer) {
+    std::vector<Vector3> corners;
+    for (int i = 0; i < 8; ++i) {
+        const auto end = [&box, i](unsigned k) {
+            return ((static_cast<unsigned>(i) >> k) & 1U ? 0.5 : -0.5) * box.size_m[k];
+        };
+        corners.push_back(outer.placed({end(0), end(1), end(2)}));
     }
-    return {Box{size_m}, 0.5 * (bounds.low_m + bounds.high_m)};
+    return corners;
 }
 
-/// The box of a mesh's file, in axes that a transform leads to. Empty, with an error or a warning, if it cannot be
-/// read.
-std::optional<BoundingBox> mesh_bounds(const MeshReference& mesh, const TreeShape& shape, const TreeLink& link,
-                                       const RigidTransform& outer, bool skips_meshes, Findings& findings) {
-    const auto lacks = [&](const std::string& why) -> std::optional<BoundingBox> {
+/// The vertices of a mesh, in axes that a transform leads to. Empty, with an error or a warning, if it cannot be read.
+std::vector<Vector3> mesh_vertices(const MeshReference& mesh, const TreeShape& shape, const TreeLink& link,
+                                   const RigidTransform& outer, bool skips_meshes, Findings& findings) {
+    const auto lacks = [&](const std::string& why) -> std::vector<Vector3> {
         const std::string text = "link '" + excerpt(link.name) + "': the mesh '" + excerpt(mesh.file) + "' " + why;
         if (skips_meshes) {
             findings.warn(shape.place, text + ": left out");
         } else {
             findings.error(shape.place, text + "; --skip-meshes leaves such shapes out");
         }
-        return std::nullopt;
+        return {};
     };
     if (!mesh.is_resolved) {
         return lacks("is not there: expected that file, or its package in a folder around this one");
     }
     try {
-        const auto surface = read_mesh(mesh.file);
-        std::optional<BoundingBox> bounds;
-        for (const Vector3& vertex : surface->vertices_m) {
-            const Vector3 at =
-                outer.placed({mesh.scale[0] * vertex[0], mesh.scale[1] * vertex[1], mesh.scale[2] * vertex[2]});
-            if (bounds) {
-                bounds->include({at, at});
-            } else {
-                bounds = BoundingBox{at, at};
-            }
+        std::vector<Vector3> vertices = mesh.vertices_m.empty() ? read_mesh(mesh.file)->vertices_m : mesh.vertices_m;
+        for (Vector3& at : vertices) {
+            at = outer.placed({mesh.scale[0] * at[0], mesh.scale[1] * at[1], mesh.scale[2] * at[2]});
         }
-        if (bounds && length_of(bounds->high_m - bounds->low_m) > 40) {
-            return lacks("is " + to_text(length_of(bounds->high_m - bounds->low_m), 4) +
+        const BoundingBox bounds = vertices.empty() ? BoundingBox{} : bounds_around(vertices);
+        constexpr double longest_m = 40;
+        if (const double length_m = length_of(bounds.high_m - bounds.low_m); length_m > longest_m) {
+            return lacks("is " + to_text(length_m, 4) +
                          " m long: expected metres; is it in mm? Then it needs scale=\"0.001 0.001 0.001\"");
         }
-        return bounds;
+        return vertices;
     } catch (const InputError& error) {
         return lacks(std::string("cannot be read (") + error.what() + "): expected .stl or .obj");
     }
+}
+
+/// The least solid around points, with a warning of how much larger it is.
+/// @param what they are the corners of: "a box that is askew"
+SpaceBodyShape around(const std::vector<Vector3>& points_m, const std::string& what, const TreeShape& shape,
+                      const TreeLink& link, const RigidTransform& outer, Findings& findings) {
+    const Matrix3 axes = transposed(outer.rotation);
+    const EnclosingSolid solid = least_solid_around(points_m, {axes[0], axes[1], axes[2]});
+    findings.warn(shape.place, "link '" + excerpt(link.name) + "' has " + what + ": taken is the " +
+                                   name_of(solid.body.shape) + " around it, which stands out from its convex hull by " +
+                                   "up to " + to_text(solid.excess_m, 2) + " m");
+    return solid.body;
 }
 
 std::optional<SpaceBodyShape> solid_of(const TreeShape& shape, const TreeLink& link, const RigidTransform& pose,
@@ -94,7 +103,7 @@ std::optional<SpaceBodyShape> solid_of(const TreeShape& shape, const TreeLink& l
             return std::nullopt;
         }
         if (!is_straight(outer.rotation)) {
-            findings.warn(shape.place, name + " has a box that is askew: taken is the box around it");
+            return around(corners_of(*box, outer), "a box that is askew", shape, link, outer, findings);
         }
         return SpaceBodyShape{Box{2.0 * half_extents(outer.rotation, 0.5 * box->size_m)}, outer.position_m};
     }
@@ -120,12 +129,11 @@ std::optional<SpaceBodyShape> solid_of(const TreeShape& shape, const TreeLink& l
             outer.position_m};
     }
     const auto& mesh = std::get<MeshReference>(shape.form);
-    const auto bounds = mesh_bounds(mesh, shape, link, outer, skips_meshes, findings);
-    if (!bounds) {
+    const std::vector<Vector3> vertices = mesh_vertices(mesh, shape, link, outer, skips_meshes, findings);
+    if (vertices.empty()) {
         return std::nullopt;
     }
-    findings.warn(shape.place, name + ": taken of the mesh '" + excerpt(mesh.file) + "' is the box around it");
-    return box_around(*bounds);
+    return around(vertices, "the mesh '" + excerpt(mesh.file) + "'", shape, link, outer, findings);
 }
 
 const std::vector<TreeShape>& shapes_of(const TreeLink& link) {
@@ -168,8 +176,10 @@ double disc_radius_m(const TreeLink& link, bool skips_meshes, Findings& findings
         } else if (const auto* sphere = std::get_if<Sphere>(&shape.form)) {
             across_m = sphere->radius_m;
         } else if (const auto* mesh = std::get_if<MeshReference>(&shape.form)) {
-            if (const auto bounds = mesh_bounds(*mesh, shape, link, shape.pose, skips_meshes, findings)) {
-                const Vector3 size_m = bounds->high_m - bounds->low_m;
+            const std::vector<Vector3> vertices = mesh_vertices(*mesh, shape, link, shape.pose, skips_meshes, findings);
+            if (!vertices.empty()) {
+                const BoundingBox bounds = bounds_around(vertices);
+                const Vector3 size_m = bounds.high_m - bounds.low_m;
                 across_m = 0.5 * *std::ranges::max_element(size_m);
             }
         }

@@ -18,9 +18,10 @@ namespace downwash::robot_import {
 
 /// A shape in a file of its own.
 struct MeshReference {
-    std::string file;         ///< a path that can be opened; as it stands in the file if it cannot be resolved
-    Vector3 scale{1, 1, 1};   ///< of the vertices; a negative one mirrors
-    bool is_resolved = true;  ///< whether a package or model that it names was found
+    std::string file;                 ///< a path that can be opened; as it stands in the file if it cannot be resolved
+    Vector3 scale{1, 1, 1};           ///< of the vertices; a negative one mirrors
+    bool is_resolved = true;          ///< whether a package or model that it names was found
+    std::vector<Vector3> vertices_m;  ///< of a mesh that was read already; empty: `file` has them
 };
 
 /// A shape of a link.

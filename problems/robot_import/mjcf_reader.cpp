@@ -12,7 +12,6 @@
 #include <utility>
 
 #include "downwash/base/text.hpp"
-#include "downwash/scene/bounding_box.hpp"
 #include "downwash/scene/space_pose.hpp"
 
 namespace downwash::robot_import {
@@ -282,9 +281,7 @@ class MjcfReader {
                 shape.form = Capsule{size[0], {0, 0, -size[1]}, {0, 0, size[1]}};
                 return true;
             case mjGEOM_MESH: {
-                const BoundingBox bounds = bounds_of_mesh(m_.geom_dataid[geom]);
-                shape.form = Box{bounds.high_m - bounds.low_m};
-                shape.pose = shape.pose * RigidTransform{identity(), 0.5 * (bounds.low_m + bounds.high_m)};
+                shape.form = compiled_mesh(m_.geom_dataid[geom]);
                 return true;
             }
             default:
@@ -292,14 +289,15 @@ class MjcfReader {
         }
     }
 
-    [[nodiscard]] BoundingBox bounds_of_mesh(int mesh) const {
-        BoundingBox bounds{{1e9, 1e9, 1e9}, {-1e9, -1e9, -1e9}};
+    /// A mesh with its vertices, which MuJoCo has scaled and moved to their centre.
+    [[nodiscard]] MeshReference compiled_mesh(int mesh) const {
+        MeshReference compiled;
+        compiled.file = name_of(mjOBJ_MESH, mesh, "mesh_");
         for (int i = 0; i < m_.mesh_vertnum[mesh]; ++i) {
             const float* v = m_.mesh_vert + 3 * static_cast<std::ptrdiff_t>(m_.mesh_vertadr[mesh] + i);
-            const Vector3 at{v[0], v[1], v[2]};
-            bounds.include({at, at});
+            compiled.vertices_m.push_back({v[0], v[1], v[2]});
         }
-        return bounds;
+        return compiled;
     }
 
     void add_sites() {

@@ -28,8 +28,8 @@ struct ImportedRobot {
 /// The end effector is the origin of the settings' tool; without one that of the only link without mass that is fixed
 /// to the last joint's, or else the farthest point of the last joint's shapes. It points away from the last joint.
 ///
-/// Solids are those of collision geometry, or else of visual geometry: boxes that are askew and meshes become boxes
-/// around them along our axes. Gains are designed (design_controller()).
+/// Solids are those of collision geometry, or else of visual geometry: boxes that are askew and meshes become the least
+/// box, cylinder, capsule or sphere around them. Gains are designed (design_controller()).
 /// @throws ProblemFileError with every error that one reading finds: what is wrong with the file, what it lacks, and
 /// what makes the robot impossible to fly (space_robot_errors()), each with a remedy
 [[nodiscard]] DOWNWASH_EXPORT ImportedRobot import_robot(const std::filesystem::path& file,

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <sdf/sdf.hh>
 #include <string>
 #include <utility>
@@ -44,6 +45,21 @@ XmlElement xml_of(const sdf::ElementPtr& from, const Place& place) {
     return element;
 }
 
+/// Files that included files include are looked for by libsdformat's global settings; this sets them for a while.
+class GlobalFinder {
+ public:
+    explicit GlobalFinder(const std::function<std::string(const std::string&)>& find)
+        : before_(sdf::ParserConfig::GlobalConfig().FindFileCallback()) {
+        sdf::ParserConfig::GlobalConfig().SetFindCallback(find);
+    }
+    ~GlobalFinder() { sdf::ParserConfig::GlobalConfig().SetFindCallback(before_); }
+    GlobalFinder(const GlobalFinder&) = delete;
+    GlobalFinder& operator=(const GlobalFinder&) = delete;
+
+ private:
+    std::function<std::string(const std::string&)> before_;
+};
+
 class SdfReader {
  public:
     SdfReader(const fs::path& file, Findings& findings) : file_(file), findings_(findings) {}
@@ -67,7 +83,9 @@ class SdfReader {
     void load() {
         sdf::Console::Instance()->SetQuiet(true);
         sdf::ParserConfig config;
-        config.SetFindCallback([this](const std::string& name) { return named_file(name, file_); });
+        const auto find = [this](const std::string& name) { return named_file(name, file_); };
+        config.SetFindCallback(find);
+        const GlobalFinder for_nested(find);
         const ConsoleLog quiet;  // of what is no SDF, libsdformat asks liburdfdom
         for (const sdf::Error& error : root_.Load(file_.string(), config)) {
             // Masses and inertias are checked with those of all formats.

@@ -73,3 +73,11 @@ def results(
     done = program("bench", "run", tmp_path / "campaign.yaml", "--out", tmp_path / "out", "--quiet")
     assert done.returncode == 0, done.stderr
     return tmp_path / "out"
+
+
+@pytest.fixture()
+def planner(problem: Any) -> downwash.Planner:
+    """One that has solved the problem of the module that asks for it."""
+    planner = downwash.Planner(problem, threads=2, finds_stops=True)
+    assert planner.solve().status == "solved"
+    return planner

@@ -9,6 +9,7 @@ import time
 import downwash
 import numpy as np
 import pytest
+from planners import midway, same
 
 BOX = {"name": "surprise", "box": {"size_m": [0.5, 0.5, 0.5], "center_m": [0, 0, 1.5]}}
 
@@ -17,23 +18,6 @@ BOX = {"name": "surprise", "box": {"size_m": [0.5, 0.5, 0.5], "center_m": [0, 0,
 def problem(bridge):
     """The bridge as it is believed, with a search that takes a moment."""
     return bridge.replace({"uncertainty": "none"}).replace({"planner.max_iterations": 60, "planner.time_limit_s": None})
-
-
-@pytest.fixture()
-def planner(problem):
-    planner = downwash.Planner(problem, threads=2, finds_stops=True)
-    assert planner.solve().status == "solved"
-    return planner
-
-
-def midway(planner):
-    """The vehicle in the middle of the last plan, and the tick there."""
-    tick = round(planner.plan["t_s"][-1] / planner.tick_s / 2)
-    return planner.predicted(planner.start, planner.plan, tick), tick
-
-
-def same(plan, other):
-    return list(plan) == list(other) and all(np.array_equal(plan[name], other[name]) for name in plan)
 
 
 def test_the_first_plan_is_that_of_solve(problem, planner):

@@ -5,6 +5,7 @@ import dataclasses
 import downwash
 import numpy as np
 import pytest
+from planners import midway, same
 
 LOWER_FLANGE = {"name": "bottom_flange", "box": {"size_m": [8, 0.36, 0.04], "center_m": [0, 0, 3.37]}}
 FAR_BOX = {"name": "surprise", "box": {"size_m": [0.3, 0.3, 0.3], "center_m": [2.5, -2, 4]}}
@@ -15,23 +16,6 @@ def problem(folder):
     """Under a girder, with a search that takes a moment."""
     girder = downwash.read_problem(folder / "space" / "around_a_girder.yaml").replace({"uncertainty": "none"})
     return girder.replace({"planner.max_iterations": 60, "planner.time_limit_s": None, "planner.seed": 2})
-
-
-@pytest.fixture()
-def planner(problem):
-    planner = downwash.Planner(problem, threads=2, finds_stops=True)
-    assert planner.solve().status == "solved"
-    return planner
-
-
-def midway(planner):
-    """The vehicle in the middle of the last plan, and the tick there."""
-    tick = round(planner.plan["t_s"][-1] / planner.tick_s / 2)
-    return planner.predicted(planner.start, planner.plan, tick), tick
-
-
-def same(plan, other):
-    return list(plan) == list(other) and all(np.array_equal(plan[name], other[name]) for name in plan)
 
 
 def test_the_first_plan_is_that_of_solve_with_its_safe_stops(problem, planner):

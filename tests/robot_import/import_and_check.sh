@@ -43,4 +43,15 @@ assert made["robot"] == "one" and made["joints"] == 1 and abs(made["mass_kg"] - 
 assert len(made["hover_share"]) == 6 and 0.4 < sum(made["hover_share"]) / 6 < 0.7, made
 '
 "$downwash" check one.yaml >/dev/null
+# A model of another program is shown as it would be imported; `downwash` leaves it to downwash-robot.
+"$downwash" robot show "$models/hexa_arm2.urdf" >out
+grep -q 'hexa_arm2, in space' out || fail "the model is not shown: $(cat out)"
+"$downwash" robot show one.yaml --json >shown.json
+python3 -c '
+import json
+made, shown = json.load(open("out.json")), json.load(open("shown.json"))
+assert len(shown["links"]) == 1 and abs(shown["mass_kg"] - 3.33) < 1e-9, shown
+for share, rotor in zip(made["hover_share"], shown["rotors"]):
+    assert abs(share - rotor["hover_share"]) < 1e-9, (made, shown)
+'
 echo "imported robots are sound"

@@ -1,11 +1,4 @@
-#include <catch2/catch.hpp>
-
-#include "../support/scratch_folder.hpp"
-#include "downwash/robot_import/robot_import.hpp"
-#include "downwash/simulation/space_robot_facts.hpp"
-#include "downwash/simulation/space_statics.hpp"
-#include "hand_calculation.hpp"
-#include "text_edits.hpp"
+#include "model_tests.hpp"
 
 using namespace downwash;
 using namespace downwash::test;
@@ -42,14 +35,7 @@ ImportSettings with_radius() {
 }
 
 std::string mjcf_errors_of(const TextEdits& edits, const ImportSettings& settings = with_radius()) {
-    const ScratchFolder folder;
-    write_text(folder / "robot.xml", edited(text_of(mjcf_model), edits));
-    try {
-        static_cast<void>(import_robot(folder / "robot.xml", settings));
-    } catch (const ProblemFileError& error) {
-        return error.what();
-    }
-    return {};
+    return errors_of(mjcf_model, edits, settings);
 }
 
 }  // namespace
@@ -84,12 +70,7 @@ TEST_CASE("an MJCF becomes the robot that a hand computes from it, to 1e-9") {
     CHECK(are_close(eigen(robot.plant.end_effector_m), Eigen::Vector3d(0, 0, -0.25)));  // the site "tool"
 
     CHECK(space_robot_facts(robot).reach_m == Approx((mjcf_joint - body.center_m).norm() + 0.25).margin(1e-9));
-    const Eigen::VectorXd expected_n = hover_thrusts_n(mjcf_hubs_m(), {0.017, -0.017, 0.017, -0.017}, 1.85 * 9.80665,
-                                                       joined({body, mjcf_arm()}).center_m);
-    const std::vector<double> shares = thrust_shares(robot.plant, center_of_mass_m(robot, arm_pose(robot, {0})));
-    for (std::size_t k = 0; k < 4; ++k) {
-        CHECK(shares[k] * robot.mass_kg() * 9.80665 == Approx(expected_n[static_cast<Eigen::Index>(k)]).margin(1e-9));
-    }
+    check_hover(robot, mjcf_hubs_m(), {0.017, -0.017, 0.017, -0.017}, joined({body, mjcf_arm()}));
     // Hull, battery and rotor discs; the floor of the world is none of it.
     CHECK(robot.body.size() == 3);
     CHECK(std::holds_alternative<Capsule>(robot.links[0].body[0].shape));

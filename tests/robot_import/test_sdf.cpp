@@ -1,12 +1,6 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 
-#include "../support/scratch_folder.hpp"
-#include "downwash/robot_import/robot_import.hpp"
-#include "downwash/simulation/space_robot_facts.hpp"
-#include "downwash/simulation/space_statics.hpp"
-#include "hand_calculation.hpp"
-#include "text_edits.hpp"
+#include "model_tests.hpp"
 
 using namespace downwash;
 using namespace downwash::test;
@@ -42,14 +36,7 @@ HandBody sdf_arm() {
 }
 
 std::string sdf_errors_of(const TextEdits& edits) {
-    const ScratchFolder folder;
-    write_text(folder / "robot.sdf", edited(text_of(sdf_model), edits));
-    try {
-        static_cast<void>(import_robot(folder / "robot.sdf"));
-    } catch (const ProblemFileError& error) {
-        return error.what();
-    }
-    return {};
+    return errors_of(sdf_model, edits);
 }
 
 }  // namespace
@@ -82,15 +69,11 @@ TEST_CASE("an SDF with motor models of gz-sim becomes the robot that a hand comp
     CHECK(are_close(eigen(robot.plant.end_effector_m), sdf_arm_axes * Eigen::Vector3d(0.35, 0, 0)));
 
     CHECK(space_robot_facts(robot).reach_m == Approx((sdf_joint - body.center_m).norm() + 0.35).margin(1e-9));
-    const Eigen::VectorXd expected_n = hover_thrusts_n(sdf_hubs_m(), {0.016, 0.016, -0.016, -0.016}, 1.764 * 9.80665,
-                                                       joined({body, sdf_arm()}).center_m);
-    const std::vector<double> shares = thrust_shares(robot.plant, center_of_mass_m(robot, arm_pose(robot, {0})));
-    for (std::size_t k = 0; k < 4; ++k) {
-        CHECK(shares[k] * robot.mass_kg() * 9.80665 == Approx(expected_n[static_cast<Eigen::Index>(k)]).margin(1e-9));
-    }
-    // The box of the base is askew in the axes of the model.
-    const auto& box = std::get<Box>(robot.body[0].shape);
-    CHECK(box.size_m[0] == Approx(0.3 * std::cos(0.5) + 0.2 * std::sin(0.5)).epsilon(1e-12));
+    check_hover(robot, sdf_hubs_m(), {0.016, 0.016, -0.016, -0.016}, joined({body, sdf_arm()}));
+    // The box of the base, 0.3 by 0.2, is askew in the axes of the model: a cylinder around it is less than a box.
+    const auto& cylinder = std::get<Cylinder>(robot.body[0].shape);
+    CHECK(cylinder.radius_m == Approx(std::hypot(0.15, 0.1)).epsilon(1e-9));
+    CHECK(cylinder.length_m == Approx(0.1).epsilon(1e-9));
     REQUIRE(imported.warnings.size() == 1);
     CHECK_THAT(imported.warnings[0].message, Contains("link 'base_link' has a box that is askew"));
 }

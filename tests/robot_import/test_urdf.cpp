@@ -1,14 +1,8 @@
-#include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
-#include "../support/scratch_folder.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
-#include "downwash/robot_import/robot_import.hpp"
-#include "downwash/simulation/space_robot_facts.hpp"
-#include "downwash/simulation/space_statics.hpp"
-#include "hand_calculation.hpp"
-#include "text_edits.hpp"
+#include "model_tests.hpp"
 
 using namespace downwash;
 using namespace downwash::test;
@@ -107,15 +101,8 @@ TEST_CASE("reach and hover thrust of an imported URDF are those of a hand calcul
     const double reach_m = (Eigen::Vector3d(0.03, 0, -0.1) - body.center_m).norm() + 0.22 + 0.24;
     CHECK(space_robot_facts(robot).reach_m == Approx(reach_m).margin(1e-9));
 
-    const HandBody whole = joined({body, upper(), forearm_and_gripper()});
-    const double weight_n = 3.33 * 9.80665;
-    const Eigen::VectorXd expected_n =
-        hover_thrusts_n(hexa_hubs_m(), {0.016, -0.016, 0.016, -0.016, 0.016, -0.016}, weight_n, whole.center_m);
-    const std::vector<double> shares = thrust_shares(robot.plant, center_of_mass_m(robot, arm_pose(robot, {0, 0})));
-    REQUIRE(shares.size() == 6);
-    for (std::size_t k = 0; k < 6; ++k) {
-        CHECK(shares[k] * robot.mass_kg() * 9.80665 == Approx(expected_n[static_cast<Eigen::Index>(k)]).margin(1e-9));
-    }
+    check_hover(robot, hexa_hubs_m(), {0.016, -0.016, 0.016, -0.016, 0.016, -0.016},
+                joined({body, upper(), forearm_and_gripper()}));
 }
 
 TEST_CASE("the written file is a sound robot, the same as the imported one, and says where its numbers come from") {

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""What the pages of runs, flights in space, campaigns, comparisons and validations must do, in a browser.
+"""What the pages of runs, flights in space, robots, campaigns, comparisons and validations must do, in a browser.
 
 test_pages.py TEMPLATES [--run FOLDER] [--campaign FOLDER] [--validation FOLDER] [--expect DIR] [unittest's arguments]
 
-TEMPLATES is the folder with run.html, space.html, campaign.html, comparison.html and validation.html as apps/viewer/build.sh makes them. With --run,
---campaign and --validation pages that the program wrote are held against the files beside them as well.
+TEMPLATES is the folder with run.html, space.html, robot.html, campaign.html, comparison.html and validation.html as apps/viewer/build.sh makes
+them. With --run, --campaign and --validation pages that the program wrote are held against the files beside them as well.
 UPDATE_EXPECTED=1 writes the expected pictures anew: look at them before they are committed.
 """
 
@@ -22,6 +22,7 @@ from comparison_tests import *
 from looks_tests import *
 from moving_tests import *
 from opening_tests import *
+from robot_tests import *
 from space_tests import *
 from validation_tests import *
 
@@ -36,6 +37,7 @@ def main():
     page_test.arguments, rest = parser.parse_known_args()
     page_test.arguments.template = os.path.join(page_test.arguments.templates, "run.html")
     page_test.arguments.space_template = os.path.join(page_test.arguments.templates, "space.html")
+    page_test.arguments.robot_template = os.path.join(page_test.arguments.templates, "robot.html")
     page_test.arguments.campaign_template = os.path.join(page_test.arguments.templates, "campaign.html")
     page_test.arguments.comparison_template = os.path.join(page_test.arguments.templates, "comparison.html")
     page_test.arguments.validation_template = os.path.join(page_test.arguments.templates, "validation.html")

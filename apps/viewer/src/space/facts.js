@@ -4,10 +4,10 @@ import {make_command} from "../command.js";
 import {foreign, h} from "../dom.js";
 import {degrees, number, place, quantity, seconds} from "../format.js";
 
-const triple = (list, as = (value) => number(value, ".3~f")) =>
+export const triple = (list, as = (value) => number(value, ".3~f")) =>
     list.map((value) => value === null ? "free" : as (value)).join(", ");
 
-function scrolled(name, heads, rows, more = null) {
+export function scrolled(name, heads, rows, more = null) {
     return h(
         "div", {class: "scroll", tabindex: "0", role: "region", "aria-label": name},
         h("table", {class: "numbers fact-table"},

@@ -1,14 +1,6 @@
-// The view in space with what moves it: playback, layers, zoom and directions.
+// The view in space of a flight.
 
-import {Trouble} from "../decode.js";
-import {h} from "../dom.js";
-import {keep_sized} from "../sizing.js";
-import {has_webgl, load_app, unpack_solids} from "../view3d.js";
-
-/** Of the window: what stands above and the playback below have room in the same screen. */
-const height_for = (width) =>
-    Math.round(Math.min((width < 500 ? 0.95 : 0.62) * width, Math.max(300, 0.56 * window.innerHeight), 640));
-const height_on_paper = 380;
+import {legend_entry, make_stage} from "../view3d_stage.js";
 
 function solids_of({scene, robot}) {
     return [...scene.obstacles.map(({solid}) => solid), ...robot.bodies, ...robot.links.flatMap(({bodies}) => bodies)];
@@ -28,92 +20,30 @@ function layers_of({data, scene}) {
 }
 
 function legend_of(model) {
-    const entry = (key, text) =>
-        h("span", {class: "entry"}, h("span", {class: `key ${key}`, "aria-hidden": "true"}), text);
-    return h(
-        "div", {class: "legend"},
+    return [
         model.data ?
-            [entry("flown", "flown path"), entry("planned", "planned path"), entry("tip", "end-effector path")] :
+            [
+                legend_entry("flown", "flown path"), legend_entry("planned", "planned path"),
+                legend_entry("tip", "end-effector path")
+            ] :
             null,
-        entry("goal", "goal, as large as its tolerance"),
-        model.is_cut_short ? entry("trouble", "where the flight breaks off") : null,
-        model.hovers.some(({goal}) => goal !== null) ? entry("hover", "hover at a goal, by its number") : null);
+        legend_entry("goal", "goal, as large as its tolerance"),
+        model.is_cut_short ? legend_entry("trouble", "where the flight breaks off") : null,
+        model.hovers.some(({goal}) => goal !== null) ? legend_entry("hover", "hover at a goal, by its number") : null
+    ].flat();
 }
 
-/**
- * The picture cannot be drawn without WebGL; the rest of the page stands all the same.
- * @returns {{element: HTMLElement, tools: HTMLElement, shown: Record<string, boolean>, ready: Promise<void>, app: any}}
- */
+/** See make_stage(). */
 export function make_scene(model, clock, playback, theme) {
-    const stage = h("div", {class: "stage alone"});
-    const note = h("p", {class: "space-note muted", role: "status"}, "Unpacking…");
-    const shown = {};
-    let app = null;
-    const switches = layers_of(model).map(([id, name, swatch]) => {
-        shown[id] = true;
-        const change = ({target}) => {
-            shown[id] = target.checked;
-            app?.show(id, target.checked);
-        };
-        return h(
-            "label", {class: "layer"},
-            h("input", {type: "checkbox", "data-toggle": id, checked: true, onchange: change}),
-            h("span", {class: `key ${swatch}`, "aria-hidden": "true"}), name);
-    });
-    if (model.data) {
-        const follow = ({target}) => app?.follow(target.checked);
-        switches.push(
-            h("label", {class: "layer"}, h("input", {type: "checkbox", "data-toggle": "follow", onchange: follow}),
-              "Follow the vehicle"));
-    }
-    const button = (text, label, act) =>
-        h("button", {type: "button", class: "small", title: label, "aria-label": label, onclick: act}, text);
-    const tools =
-        h("div", {class: "zoom-tools screen-only", role: "group", "aria-label": "View"},
-          button("Top", "From above, y upwards", () => app?.look_along(0, 0.001, -1)),
-          button("Side", "From the side, x to the right", () => app?.look_along(0, 1, 0)),
-          button("Front", "From the front, y to the right", () => app?.look_along(-1, 0, 0)),
-          button("+", "Zoom in", () => app?.zoom_by(1.4)), button("−", "Zoom out", () => app?.zoom_by(1 / 1.4)),
-          button(model.data ? "Flight" : "Fit", model.data ? "Fit the flight" : "Fit the bounds", () => app?.home()));
-    playback?.plays_on_tap(stage);
-    const element =
-        h("figure", {class: "scene"}, stage, playback?.element,
-          h("fieldset", {class: "layers screen-only"}, h("legend", {class: "visually-hidden"}, "Layers of the scene"),
-            switches),
-          note, h("figcaption", null, legend_of(model)));
-
-    const start = async () => {
-        if (!has_webgl()) {
-            throw new Trouble(
-                "This browser offers no WebGL here, which the view in space draws with. Plots and tables have the numbers.");
-        }
-        await unpack_solids(solids_of(model));
-        app = (await load_app()).start(stage, model, clock);
-        app.set_theme(document.documentElement.dataset.theme);
-        theme.follow(app.set_theme);
-        stage.view = app;  // for tests
-        // Before keep_sized() listens, which asks for the width on paper.
-        let on_paper = false;
-        addEventListener("beforeprint", () => {
-            on_paper = true;
-        });
-        addEventListener("afterprint", () => {
-            on_paper = false;
-        });
-        keep_sized(stage, 690, (width) => {
-            const height = on_paper ? height_on_paper : height_for(width);
-            stage.style.height = `${height}px`;
-            stage.style.width = on_paper ? `${width}px` : "";
-            app.resize(width, height, on_paper);
-        });
-        note.textContent = app.note;
-        stage.dataset.state = "open";
-    };
-    const ready = start().catch((error) => {
-        stage.classList.add("failed");
-        stage.dataset.state = "failed";
-        note.textContent =
-            error instanceof Trouble ? error.message : `The view in space cannot be shown: ${error.message}.`;
-    });
-    return {element, tools, shown, ready, get app() { return app; }};
+    return make_stage(
+        {
+            solids: solids_of(model),
+            layers: layers_of(model),
+            home: model.data ? ["Flight", "Fit the flight"] : ["Fit", "Fit the bounds"],
+            legend: legend_of(model),
+            playback,
+            can_follow: Boolean(model.data),
+            start: (bundle, stage) => bundle.start(stage, model, clock),
+        },
+        theme);
 }

@@ -48,11 +48,11 @@ export function planar_view(extent, width_m, obstacles) {
  *     first: its middle, its size in metres, what has to be in the picture, and where the camera looks
  */
 export function make_camera(canvas, {target, size, corners, direction}, render) {
-    const camera = new three.PerspectiveCamera(40, 2, 0.05, 60 * size);
+    const camera = new three.PerspectiveCamera(40, 2, Math.min(0.05, 0.02 * size), 60 * size);
     camera.up.set(0, 0, 1);
     const controls = new OrbitControls(camera, canvas);
     controls.enableKeys = false;
-    controls.minDistance = 0.5;
+    controls.minDistance = Math.min(0.5, 0.3 * size);
     controls.maxDistance = 20 * size;
     controls.addEventListener("change", render);
 

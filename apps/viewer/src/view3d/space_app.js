@@ -1,6 +1,5 @@
 // A flight in space: a bundle of its own with three.js. World axes as in the data: x right, y away, z up.
 
-import {ticks} from "d3-array";
 import * as three from "three";
 
 import {isolated} from "../dom.js";
@@ -8,6 +7,7 @@ import {number, place} from "../format.js";
 import {are_many} from "../surroundings.js";
 
 import {make_camera} from "./camera.js";
+import {axis_names, draw_floor, floor_of} from "./floor.js";
 import {lights, make_canvas, palettes} from "./look.js";
 import {make_names} from "./names.js";
 import {draw_line, draw_solid, draw_together, draw_tube} from "./solids.js";
@@ -35,29 +35,6 @@ function opening_of(model) {
         include(model.position_at(row), reach_m);
     }
     return {low, high};
-}
-
-/** A level grid below all that is seen first, on whole numbers of steps. */
-function floor_of({low, high}) {
-    const lines = ticks(0, Math.max(high[0] - low[0], high[1] - low[1]), 10), step_m = lines[1] - lines[0];
-    const along = (k) => {
-        const first = Math.floor(low[k] / step_m), last = Math.ceil(high[k] / step_m);
-        return Array.from({length: last - first + 1}, (_, i) => (first + i) * step_m);
-    };
-    return {step_m, x_m: along(0), y_m: along(1), z_m: low[2]};
-}
-
-const ends = (list) => [list[0], list[list.length - 1]];
-
-function draw_floor({x_m, y_m, z_m}, paint) {
-    const [left, right] = ends(x_m), [near, far] = ends(y_m);
-    const points =
-        [...x_m.flatMap((x) => [x, near, z_m, x, far, z_m]), ...y_m.flatMap((y) => [left, y, z_m, right, y, z_m])];
-    const geometry = new three.BufferGeometry();
-    geometry.setAttribute("position", new three.BufferAttribute(new Float32Array(points), 3));
-    const material = new three.LineBasicMaterial({transparent: true, opacity: 0.28, depthWrite: false});
-    paint(material, "edge");
-    return new three.LineSegments(geometry, material);
 }
 
 /** The box in which the centre of mass may be. */
@@ -158,19 +135,7 @@ function names_of(model, floor, opening, direction, most_ticks) {
     const {goals, scene, start} = model;
     const names = goals.map((goal) => ({kind: "of-goal", text: goal.name, at: vector(place_of(goal, scene))}));
     names.push({kind: "of-start", text: "start", at: vector(start.position_m)});
-    const tick = (value) => place(value).replace(/[.]?0+(?=\u00a0)/, "");
-    const ticks_along = (name, values, at) => {
-        const every = Math.ceil(values.length / most_ticks);
-        return values.filter((_, i) => i % every === 0)
-            .map((value) => ({kind: "of-axis", text: `${name} ${tick(value)}`, at: vector(at(value))}));
-    };
-    const sides = (values, is_from_low) => is_from_low ? ends(values) : ends(values).reverse();
-    const [near_x] = sides(floor.x_m, direction.x > 0), [near_y, far_y] = sides(floor.y_m, direction.y > 0);
-    const heights = ticks(opening.low[2], opening.high[2], Math.min(4, most_ticks));
-    names.push(
-        ...ticks_along("x", floor.x_m, (x) => [x, near_y, floor.z_m]),
-        ...ticks_along("y", floor.y_m.slice(1), (y) => [near_x, y, floor.z_m]),
-        ...ticks_along("z", heights, (z) => [near_x, far_y, z]));
+    names.push(...axis_names(floor, opening, direction, most_ticks));
     const most_names = 60;
     const size_m = ({low_m, high_m}) => Math.hypot(...axes.map((k) => high_m[k] - low_m[k]));
     const named = are_many(scene.obstacles) ? [] : scene.obstacles.filter(({name}) => name);

@@ -29,8 +29,9 @@ function draw_capsule({radius_m, from_m, to_m}, material) {
 
 /**
  * @param {{is_ghost?: boolean}} style a ghost is faint, without edges and arrows
- * @returns `body` to be put into the world; `move(pose)`; `push(thrusts_n)` sets the arrows at the rotors, as long as
- *     `meters_per_n` says; `covered()`: groups of points that names should keep off; `tip()`: where the end effector is
+ * @returns `body` to be put into the world; `links`, the frames within it; `solids`; `move(pose)`; `push(thrusts_n)`
+ *     sets the arrows at the rotors, as long as `meters_per_n` says; `covered()`: groups of points that names should keep
+ *     off; `tip()`: where the end effector is
  */
 export function draw_space_robot(robot, paint, {is_ghost = false, meters_per_n = 0} = {}) {
     const {rotors, links, rotor_radius_m} = robot;
@@ -45,13 +46,16 @@ export function draw_space_robot(robot, paint, {is_ghost = false, meters_per_n =
     const disc = material("flown", 0.5 * share, {side: three.DoubleSide}),
           shell = material("body", 0.5 * share, {side: three.DoubleSide});
     const size_m = Math.max(rotor_radius_m, ...rotors.map(({position_m}) => Math.hypot(...position_m)));
-    const thin_m = Math.max(0.006, 0.03 * size_m);
+    const thin_m = Math.min(Math.max(0.006, 0.03 * size_m), 0.06 * size_m);
 
+    const drawn = [];
     const draw_bodies = (bodies, name, into) => {
         for (const solid of bodies.filter((each) => each)) {
-            into.add(
-                solid.capsule ? draw_capsule(solid.capsule, name === "body" ? shell : arm) :
-                                draw_solid(solid, name, paint, (name === "body" ? 0.45 : 0.9) * share, !is_ghost));
+            const part = solid.capsule ?
+                draw_capsule(solid.capsule, name === "body" ? shell : arm) :
+                draw_solid(solid, name, paint, (name === "body" ? 0.45 : 0.9) * share, !is_ghost);
+            drawn.push(part);
+            into.add(part);
         }
     };
     const body = new three.Group();
@@ -114,6 +118,8 @@ export function draw_space_robot(robot, paint, {is_ghost = false, meters_per_n =
     const up_m = Math.max(0, ...rotors.map(({position_m}) => position_m[2]));
     return {
         body,
+        links: frames.map(({link}) => link),
+        solids: drawn,
         arrows,
         move({position_m, attitude: [w, x, y, z], joints_rad}) {
             body.position.copy(vector(position_m));
