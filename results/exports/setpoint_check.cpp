@@ -197,6 +197,7 @@ class QuantityCheck {
     /// One number of all set-points, of each coordinate.
     [[nodiscard]] std::vector<Vector3> vectors(const std::vector<Setpoint>& points, double Motion::*number) const {
         std::vector<Vector3> all;
+        all.reserve(points.size());
         for (const Setpoint& point : points) {
             const std::array<Motion, 3> motions = quantity_.of(point);
             all.push_back({motions[0].*number, motions[1].*number, motions[2].*number});
@@ -206,6 +207,7 @@ class QuantityCheck {
     /// The same of the only coordinate.
     [[nodiscard]] std::vector<double> numbers(const std::vector<Setpoint>& points, double Motion::*number) const {
         std::vector<double> all;
+        all.reserve(points.size());
         for (const Setpoint& point : points) {
             all.push_back(quantity_.of(point)[0].*number);
         }
@@ -263,6 +265,7 @@ SetpointCheck checked(const RunInWorld& run, std::string_view text, const std::s
     const SetpointFile file = read_setpoint_file(text, name, run.joints, run.turns);
     const SetpointAxes axes(file.frame, bearing_deg);
     Pairs pairs{file, {}};
+    pairs.plan.reserve(file.points.size());
     for (const Setpoint& point : file.points) {
         pairs.plan.push_back(axes.of(plan.at(point.t_s)));
     }

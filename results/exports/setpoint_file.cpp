@@ -14,6 +14,7 @@ constexpr std::size_t max_columns = 200;
 /// The columns of a file that a table describes, in its order. Adds an error for each that is missing.
 std::vector<std::size_t> find_columns(CsvReader& csv, const std::vector<SetpointColumn>& columns) {
     std::vector<std::size_t> places;
+    places.reserve(columns.size());
     for (const SetpointColumn& column : columns) {
         places.push_back(csv.required(column.name, "the columns that `downwash export` writes"));
     }

@@ -197,6 +197,7 @@ std::vector<std::size_t> joint_order(MessageReader& reader, const Node& names,
                                      const std::vector<JointInWorld>& joints) {
     std::vector<std::size_t> order;
     std::vector<std::string_view> known;
+    known.reserve(joints.size());
     for (const JointInWorld& joint : joints) {
         known.push_back(joint.name);
     }
