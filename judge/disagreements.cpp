@@ -149,10 +149,12 @@ std::vector<Disagreement> disagreements_about_flight(const FlightClaims& claims,
     const double cost = flight.cost(objective);
     list.compare("execution.energy_j", claims.energy_j, flight.energy_j, cost_tolerance * flight.energy_j);
     // When a touch begins and how far behind the surface its reference ends is a matter of a few ticks.
-    const double ticks = flight.touch_force_n ? 10 : 1;
+    const bool touches =
+        std::ranges::any_of(flight.goals, [](const JudgedGoal& goal) { return goal.touch_force_n.has_value(); });
+    const double ticks = touches ? 10 : 1;
     list.compare("execution.duration_s", claims.duration_s, flight.duration_s, ticks * tick_s * (1 + rounding));
     list.compare("execution.cost", claims.cost, cost, cost_tolerance * cost);
-    const double swing = flight.touch_force_n ? 3 : 1;  // an impact and a release magnify what was different before
+    const double swing = touches ? 3 : 1;  // an impact and a release magnify what was different before
     list.compare("execution.goal_error_m", claims.goal_error_m, flight.goal_error_m, swing * goal_error_tolerance_m);
     return std::move(list.found);
 }

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "downwash/judge/vehicle.hpp"
 
@@ -45,7 +47,7 @@ GoalDistance distance(const EndEffectorGoal& at, const ArmParameters& arm, const
     return distance_of(at, tip.x - at.x_m, tip.z - at.z_m, angle, at.direction_tolerance_rad);
 }
 
-/// A contact is reached at its places, which are its alternatives.
+/// A contact is reached at its places.
 GoalDistance distance(const ContactGoal& /*at*/, const ArmParameters& /*arm*/, const PlanarPose& /*pose*/) {
     return {HUGE_VAL, HUGE_VAL};
 }
@@ -54,6 +56,22 @@ GoalDistance single(const Goal& goal, const ArmParameters& arm, const PlanarPose
     GoalDistance d = std::visit([&](const auto& kind) { return distance(kind, arm, pose); }, goal.kind);
     d.hold_s = goal.hold_s;
     return d;
+}
+
+/// The alternative whose tolerances a pose uses least, and how far it is from that.
+std::pair<const Goal*, GoalDistance> nearest(const Goal& goal, const ArmParameters& arm, const PlanarPose& pose) {
+    const std::vector<Goal>& all = goal.places.empty() ? goal.any_of : goal.places;
+    if (all.empty()) {
+        return {&goal, single(goal, arm, pose)};
+    }
+    std::pair<const Goal*, GoalDistance> least{};
+    for (const Goal& each : all) {
+        const GoalDistance d = single(each, arm, pose);
+        if (least.first == nullptr || d.used_share < least.second.used_share) {
+            least = {&each, d};
+        }
+    }
+    return least;
 }
 
 PlanarPose level(const ReferencePoint& point) {
@@ -67,17 +85,12 @@ std::int64_t ticks_of(double duration_s, double tick_s) {
 }  // namespace
 
 GoalDistance goal_distance(const Goal& goal, const ArmParameters& arm, const PlanarPose& pose) {
-    if (goal.any_of.empty()) {
-        return single(goal, arm, pose);
-    }
-    std::optional<GoalDistance> nearest;
-    for (const Goal& each : goal.any_of) {
-        const GoalDistance d = single(each, arm, pose);
-        if (!nearest || d.used_share < nearest->used_share) {
-            nearest = d;
-        }
-    }
-    return *nearest;
+    return nearest(goal, arm, pose).second;
+}
+
+const Touch* touch_after(const Goal& goal, const ArmParameters& arm, const PlanarPose& pose) {
+    const std::optional<Touch>& touch = nearest(goal, arm, pose).first->touch;
+    return touch ? &*touch : nullptr;
 }
 
 std::vector<std::int64_t> hover_ends(const Plan& plan, std::span<const Goal> goals, const ArmParameters& arm) {

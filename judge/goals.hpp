@@ -24,6 +24,9 @@ struct GoalDistance {
 [[nodiscard]] DOWNWASH_EXPORT GoalDistance goal_distance(const Goal& goal, const ArmParameters& arm,
                                                          const PlanarPose& pose);
 
+/// The touch that follows a hover for a goal; nullptr where none does. @param pose where the vehicle should hover
+[[nodiscard]] const Touch* touch_after(const Goal& goal, const ArmParameters& arm, const PlanarPose& pose);
+
 /// The ticks at which the hovers of the goals of a plan end, in their order; fewer if the plan does not come to all of
 /// them. The vehicle hovers at the last of these behind the last knot, at each other one between two knots that are the
 /// same point at rest, meet the goal and are at least its hold apart.

@@ -29,6 +29,14 @@ struct JudgedRow {
     double energy_j = 0;
 };
 
+/// What became of a goal.
+struct JudgedGoal {
+    bool is_met = false;
+    double error_m = 0;  ///< worst over the last second of its hover and of that after its touch, or where the flight
+                         ///< ended before
+    std::optional<double> touch_force_n;  ///< mean normal force over the hold of its touch; 0 if it was not held
+};
+
 /// The figures of one flight of a plan, hover included.
 struct JudgedFlight {
     Outcome outcome = Outcome::ok;
@@ -40,8 +48,8 @@ struct JudgedFlight {
     double clearance_integral = 0;  ///< [s/m]
     double goal_error_m = 0;        ///< worst of all goals over the last second of its hover
     double max_tracking_error_m = 0;
-    std::optional<double> touch_force_n;  ///< mean normal force over the hold of a touch; 0 if it was not held
-    std::vector<JudgedRow> rows;          ///< one per control tick
+    std::vector<JudgedGoal> goals;  ///< one for each, in their order
+    std::vector<JudgedRow> rows;    ///< one per control tick
 
     /// By an objective.
     [[nodiscard]] double cost(const CostFunction& objective) const noexcept {

@@ -14,22 +14,6 @@ namespace {
 constexpr std::string_view outcome_names[] = {"ok",          "collision",  "unstable", "left_flyable_area",
                                               "goal_missed", "over_budget"};
 
-/// The alternative at which a plan ends, if a touch follows there.
-const Goal* touching_goal(const Goal& goal, const Plan& plan, const Problem& problem) {
-    const ReferencePoint& last = plan.reference.back().point;
-    const PlanarPose level{last.position[0], last.position[1], 0, last.position[2]};
-    const Goal* nearest = nullptr;
-    double least = 0;
-    for (const Goal& each : goal.any_of) {
-        const double share = goal_distance(each, problem.robot.arm, level).used_share;
-        if (each.touch && (nearest == nullptr || share < least)) {
-            nearest = &each;
-            least = share;
-        }
-    }
-    return nearest;
-}
-
 }  // namespace
 
 std::string_view name_of(Outcome outcome) noexcept {
@@ -52,36 +36,49 @@ JudgedFlight PlanJudge::fly(const Plan& plan, const FlightConditions& conditions
     FlownVehicle vehicle(*setting_, conditions);
     Loop& loop = vehicle.loop();
     Umpire& umpire = vehicle.umpire();
-    Reference reference(plan);
     const std::vector<Goal> goals = goals_of(problem);
     const std::vector<std::int64_t> hovers = hover_ends(plan, goals, problem.robot.arm);
-    const std::int64_t end = hovers.back();
+    std::vector<Umpire::Stay> stays(goals.size());
+    Reference reference(plan);
     ReferencePoint now = reference.at(0);
     bool goes_on = umpire.sees(loop, now) && vehicle.has_begun();
-    for (std::int64_t tick = 0; tick < end && goes_on; ++tick) {
-        loop.next(tick, now);
+    std::size_t goal = 0;    // that the vehicle is on the way to
+    std::int64_t flown = 0;  // ticks, touches included
+    for (std::int64_t tick = 0; tick < hovers.back() && goes_on; ++tick) {
+        loop.next(flown++, now);
         now = reference.at(tick + 1);
         goes_on = umpire.sees(loop, now);
-    }
-    std::vector<std::int64_t> ends = hovers;
-    const Goal* const touching =
-        goes_on && hovers.size() == goals.size() ? touching_goal(goals.back(), plan, problem) : nullptr;
-    if (touching != nullptr) {
-        const TouchSurface surface(*touching->touch, vehicle.world());
-        const Plant touched = vehicle.touching(surface);
-        loop.fly_with(touched);
-        TouchCourse course = course_of(*touching->touch, problem.robot);
-        std::int64_t tick = end;
-        for (; goes_on && !course.is_over(); ++tick) {
-            loop.next(tick, reference_of(course, *touching->touch, now), course.is_at_surface());
-            course.next(loop.state().contact_n);
-            goes_on = umpire.sees_touch(loop, reference_of(course, *touching->touch, now), surface);
+        if (tick + 1 != hovers[goal]) {
+            continue;
         }
-        umpire.sees_hold(*touching->touch, course.hold());
-        umpire.sees_goals(goals, hovers);
-        ends.back() = tick;  // back where it touched from
+        Umpire::Stay& stay = stays[goal];
+        if (const auto row = static_cast<std::size_t>(flown); row < vehicle.flight().rows.size()) {
+            stay.row = row;
+        }
+        const bool is_end = goal + 1 == hovers.size() && hovers.size() < goals.size();  // no hover at a goal
+        const PlanarPose pose{now.position[0], now.position[1], 0, now.position[2]};
+        const Touch* const touch = goes_on && !is_end ? touch_after(goals[goal], problem.robot.arm, pose) : nullptr;
+        ++goal;
+        if (touch == nullptr) {
+            continue;
+        }
+        const TouchSurface surface(*touch, vehicle.world());
+        const Plant touched = vehicle.touching(surface);
+        const Plant& free = loop.plant();
+        loop.fly_with(touched);
+        TouchCourse course = course_of(*touch, problem.robot);
+        while (goes_on && !course.is_over()) {
+            loop.next(flown++, reference_of(course, *touch, now), course.is_at_surface());
+            course.next(loop.state().contact_n);
+            goes_on = umpire.sees_touch(loop, reference_of(course, *touch, now), surface);
+        }
+        loop.fly_with(free);
+        stay.touch_force_n = umpire.sees_hold(*touch, course.hold());
+        stay.row_after = vehicle.flight().rows.size() - 1;  // back where it touched from
+        goes_on = vehicle.flight().outcome == Outcome::ok;
+        stay.is_touch_met = goes_on;
     }
-    umpire.sees_goals(goals, ends);
+    umpire.sees_goals(goals, stays);
     return std::move(vehicle.flight());
 }
 

@@ -113,32 +113,43 @@ bool Umpire::sees_touch(const Loop& loop, const ReferencePoint& reference, const
         flight_.outcome = Outcome::left_flyable_area;
     }
     is_apart_ = depth_m < 0;
+    last_ = motion;
     return flight_.outcome == Outcome::ok;
 }
 
-void Umpire::sees_hold(const Touch& touch, const std::optional<TouchCourse::Hold>& hold) {
-    flight_.touch_force_n = hold ? hold->mean_n : 0;
+double Umpire::sees_hold(const Touch& touch, const std::optional<TouchCourse::Hold>& hold) {
     if (flight_.outcome == Outcome::ok && !(hold && hold->worst_second_n <= touch.force_tolerance_n && is_apart_)) {
         flight_.outcome = Outcome::goal_missed;
     }
+    return hold ? hold->mean_n : 0;
 }
 
-void Umpire::sees_goals(const std::vector<Goal>& goals, const std::vector<std::int64_t>& ends) {
-    const auto ticks = static_cast<std::int64_t>(flight_.rows.size());
-    const std::int64_t settling = std::llround(settling_s / tick_s_);
+void Umpire::sees_goals(const std::vector<Goal>& goals, const std::vector<Stay>& stays) {
+    const auto settling = static_cast<std::size_t>(std::llround(settling_s / tick_s_));
     for (std::size_t i = 0; i < goals.size(); ++i) {
-        const bool is_flown = i < ends.size() && ends[i] < ticks;
-        const std::int64_t last = is_flown ? ends[i] : ticks - 1;
-        bool is_met = is_flown;
-        for (std::int64_t t = std::max<std::int64_t>(0, last - (is_flown ? settling : 0)); t <= last; ++t) {
-            const JudgedRow& row = flight_.rows[static_cast<std::size_t>(t)];
-            const GoalDistance off = goal_distance(goals[i], problem_.robot.arm, row.pose);
-            flight_.goal_error_m = std::max(flight_.goal_error_m, off.distance_m);
-            is_met = is_met && off.used_share <= 1 && std::hypot(row.vx_m_s, row.vz_m_s) < slow_m_s;
+        const Stay& stay = stays[i];
+        JudgedGoal goal{stay.row.has_value() && stay.is_touch_met, 0, stay.touch_force_n};
+        const auto look = [&](std::size_t last, std::size_t ticks) {
+            for (std::size_t t = last - std::min(last, ticks); t <= last; ++t) {
+                const JudgedRow& row = flight_.rows[t];
+                const GoalDistance off = goal_distance(goals[i], problem_.robot.arm, row.pose);
+                goal.error_m = std::max(goal.error_m, off.distance_m);
+                goal.is_met = goal.is_met && off.used_share <= 1 && std::hypot(row.vx_m_s, row.vz_m_s) < slow_m_s;
+            }
+        };
+        if (stay.row) {
+            look(*stay.row, settling);
+        } else if (!flight_.rows.empty()) {
+            look(flight_.rows.size() - 1, 0);
         }
-        if (!is_met && flight_.outcome == Outcome::ok) {
+        if (stay.row_after) {
+            look(*stay.row_after, settling);
+        }
+        flight_.goal_error_m = std::max(flight_.goal_error_m, goal.error_m);
+        if (!goal.is_met && flight_.outcome == Outcome::ok) {
             flight_.outcome = Outcome::goal_missed;
         }
+        flight_.goals.push_back(goal);
     }
     if (flight_.outcome == Outcome::ok && problem_.energy_budget_j && flight_.energy_j > *problem_.energy_budget_j) {
         flight_.outcome = Outcome::over_budget;

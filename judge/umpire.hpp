@@ -27,11 +27,19 @@ class Umpire {
     /// Looks at a vehicle that may touch a surface with the part that is meant to.
     bool sees_touch(const Loop& loop, const ReferencePoint& reference, const TouchSurface& surface);
 
-    /// Says how a touch ended. @param hold empty: the force was not held
-    void sees_hold(const Touch& touch, const std::optional<TouchCourse::Hold>& hold);
+    /// Says how a touch ended; the flight, too, where it is not met. @param hold empty: the force was not held
+    /// @return mean force [N]
+    double sees_hold(const Touch& touch, const std::optional<TouchCourse::Hold>& hold);
 
-    /// Goes through the goals at the end of a flight.
-    void sees_goals(const std::vector<Goal>& goals, const std::vector<std::int64_t>& ends);
+    /// A hover at a goal, and the touch that followed.
+    struct Stay {
+        std::optional<std::size_t> row;        ///< at the end of the hover
+        std::optional<std::size_t> row_after;  ///< at the end of the touch, met or not
+        std::optional<double> touch_force_n;
+        bool is_touch_met = true;
+    };
+    /// Goes through the goals at the end of a flight. @param stays one for each
+    void sees_goals(const std::vector<Goal>& goals, const std::vector<Stay>& stays);
 
  private:
     /// An instant within a tick.

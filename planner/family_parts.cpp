@@ -10,6 +10,7 @@
 #include "downwash/search/obstacle_labels.hpp"
 #include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/space_pool.hpp"
+#include "downwash/simulation/touch.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -55,7 +56,7 @@ SpacePlan with_hover(const SpacePlan& plan, const SpaceGoal& goal, const SpacePr
     return plan.held_for(rule.hovers(plan).front().end_tick - plan.reference.back().tick);
 }
 
-FlightState flown_on(const PlannerModel& model, const Plan& plan, std::size_t first, const Goal& /*goal*/,
+FlightState flown_on(const PlannerModel& model, const Plan& plan, std::size_t first, const Goal& goal,
                      FlightState vehicle) {
     for (std::size_t knot = first + 1; knot < plan.reference.size(); ++knot) {
         const SegmentFlight flight =
@@ -64,7 +65,14 @@ FlightState flown_on(const PlannerModel& model, const Plan& plan, std::size_t fi
             throw std::logic_error(flies_otherwise);
         }
     }
-    return vehicle;
+    const ReferencePoint& last = plan.reference.back().point;
+    const Touch* const touch = touch_at(goal, model.flight->tick().plant, level_at(configuration_of(last)));
+    if (touch == nullptr) {
+        return vehicle;
+    }
+    FlightState after = vehicle;
+    const TouchFlight flown = downwash::fly_touch(*model.flight, model.own_map.get(), *touch, last, after);
+    return flown.rejection == Rejection::none ? after : vehicle;
 }
 
 SpaceTouchFlown fly_touch(const SpaceProblemModel& model, const SurfaceVolumes* map, const SpaceGoalRule& rule,

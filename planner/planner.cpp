@@ -185,7 +185,7 @@ void PlannerOf<Family>::apply(const SceneChange& change) {
         planning::set_goal(next, *change.goal);
     }
     throw_if_any(planning::errors_beside_start(next));
-    problem_ = std::move(next);
+    problem_ = planning::with_places(std::move(next));
     model_ = planning::model_of(problem_, changed.empty() ? model_ : nullptr);
     unmapped_.insert(unmapped_.end(), changed.begin(), changed.end());
 }

@@ -10,6 +10,7 @@
 #include "downwash/planner/space_worlds.hpp"
 #include "downwash/planner/world_flights.hpp"
 #include "downwash/problems/space_problem_parameters.hpp"
+#include "downwash/problems/touch_places.hpp"
 #include "downwash/simulation/execution.hpp"
 
 namespace downwash::planning {
@@ -95,6 +96,10 @@ void set_goal(SpaceProblem& problem, const SpaceGoal& goal) {
     problem.in_any_order = false;
     problem.return_to.reset();
     problem.energy_budget_j.reset();
+}
+
+Problem with_places(Problem problem) {
+    return with_touches(std::move(problem));
 }
 
 void drop_visited(Problem& problem, const FlightModel& model, const Plan& plan, std::int64_t tick) {

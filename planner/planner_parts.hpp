@@ -56,6 +56,12 @@ void take_order(SpaceProblem& problem, const SpaceSearchResult& solution);
 void set_goal(Problem& problem, const Goal& goal);
 void set_goal(SpaceProblem& problem, const SpaceGoal& goal);
 
+/// The problem with what its goals take from its scene.
+[[nodiscard]] Problem with_places(Problem problem);
+[[nodiscard]] inline SpaceProblem with_places(SpaceProblem problem) {
+    return problem;
+}
+
 /// Drops goals whose hovers are over by a tick of a plan, but for the last one.
 void drop_visited(Problem& problem, const FlightModel& model, const Plan& plan, std::int64_t tick);
 void drop_visited(SpaceProblem& problem, const SpaceProblemModel& model, const SpacePlan& plan, std::int64_t tick);

@@ -26,9 +26,9 @@ SpaceProblemWorlds flights_of(const SpaceProblem& problem, const std::shared_ptr
     return {problem, {problem.planner.variant, model, volumes}, threads};
 }
 
-/// Moves vehicles along a whole plan, a leg for each piece of it.
+/// Moves vehicles along a whole plan, a leg for each piece of it; touches are left out.
 void advance(WorldFlights& flights, std::vector<FlightJob>& fleet, const Plan& plan) {
-    flights.advance(fleet, plan, 0, plan.reference.size() - 1, std::nullopt);
+    flights.advance(fleet, plan, {});
 }
 void advance(SpaceProblemWorlds& flights, std::vector<SpaceFlightJob>& fleet, const SpacePlan& plan) {
     flights.advance(fleet, plan);

@@ -100,16 +100,18 @@ Takeover take_over(const Problem& flown, const Plan& plan, const std::optional<V
     from.tick = tick;
     from.start = flown.start;
     from.rest = plan.rest_after(tick);
+    const std::vector<Goal> goals = goals_of(in_order(flown, order));
     if (tick > 0) {
+        std::vector<PlannedTouch> touches = touches_of(*model, plan.reference, goals);
+        std::erase_if(touches, [tick](const PlannedTouch& touch) { return touch.tick > tick; });
         const FlightPart part = execute_part(*model, start_state(*model, flown.start), plan.beginning(tick).segments(),
-                                             flown.aero.enabled, {});
+                                             flown.aero.enabled, {}, {}, touches);
         if (part.rejection != Rejection::none) {
             throw_failed_before();
         }
         from.start = start_of(*model, part.end, plan.at(tick));
         from.energy_j = part.end.plant.energy_j;
     }
-    const std::vector<Goal> goals = goals_of(in_order(flown, order));
     for (const std::size_t knot : hover_ends(*model, plan.reference, goals)) {
         if (plan.reference[knot].tick <= tick && from.visited.size() + 1 < goals.size()) {
             const std::size_t next = from.visited.size();

@@ -155,8 +155,8 @@ void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::
     std::vector<FlightJob*> owners;
     for (FlightJob& job : jobs) {
         if (job.rejection() == Rejection::none) {
-            flying.push_back(
-                {job.legs.empty() ? job.start : job.end(), legs, judged_ticks, job.world, plan.reference[first].tick});
+            flying.push_back({job.legs.empty() ? job.start : job.end(), legs, judged_ticks, job.world,
+                              job.first_tick + plan.reference[first].tick});
             owners.push_back(&job);
         }
     }
@@ -164,6 +164,21 @@ void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::
     for (std::size_t i = 0; i < flying.size(); ++i) {
         std::move(flying[i].legs.begin(), flying[i].legs.end(), std::back_inserter(owners[i]->legs));
     }
+}
+
+void WorldFlights::advance(std::vector<FlightJob>& jobs, const Plan& plan, std::span<const PlannedTouch> touches) {
+    std::size_t knot = 0;
+    for (const PlannedTouch& each : touches) {
+        const auto end = std::ranges::find(plan.reference, each.tick, &ReferenceKnot::tick);
+        const auto last = static_cast<std::size_t>(end - plan.reference.begin());
+        advance(jobs, plan, std::exchange(knot, last), last, std::nullopt);
+        touch(jobs, each);
+    }
+    advance(jobs, plan, knot, plan.reference.size() - 1, std::nullopt);
+}
+
+std::vector<PlannedTouch> WorldFlights::touches_of(const Plan& plan, std::size_t visits) const {
+    return downwash::touches_of(*model_, plan.reference, std::span(goals_).first(visits));
 }
 
 std::vector<WorldFlight> WorldFlights::fly(const Plan& plan, std::size_t visits, std::span<const FlownWorld> worlds,
@@ -194,14 +209,22 @@ std::vector<WorldFlight> WorldFlights::fly_on(std::vector<std::optional<FlightSt
     }
     const std::span<const Goal> goals = std::span(goals_).first(visits);
     const std::vector<std::size_t> hovers = hover_ends(*model_, plan.reference, goals);
+    const Plan held = with_hover(plan, goals.back(), *model_);
+    const std::vector<PlannedTouch> touches = touches_of(plan, visits);
     std::size_t knot = first;
+    const auto go_on = [&](std::size_t last, std::size_t goal) {
+        advance(jobs, held, std::exchange(knot, last), last, goal);
+        const auto next = std::ranges::find(touches, held.reference[last].tick, &PlannedTouch::tick);
+        if (next != touches.end()) {
+            touch(jobs, *next);
+        }
+    };
     for (std::size_t i = 0; i < hovers.size(); ++i) {
         if (hovers[i] > knot) {
-            advance(jobs, plan, std::exchange(knot, hovers[i]), hovers[i], i);
+            go_on(hovers[i], i);
         }
     }
-    const Plan held = with_hover(plan, goals.back(), *model_);
-    advance(jobs, held, knot, held.reference.size() - 1, visits - 1);
+    go_on(held.reference.size() - 1, visits - 1);
     throw_if_over(is_over);  // then some were interrupted
     const bool misses_a_goal = hovers.size() + 1 < visits;
     const double budget_j = problem_.energy_budget_j.value_or(std::numeric_limits<double>::infinity());
@@ -217,9 +240,6 @@ std::vector<WorldFlight> WorldFlights::fly_on(std::vector<std::optional<FlightSt
             misses_a_goal && rejection == Rejection::none ? hovers.size() : failed_goal(jobs[i], first, hovers),
             is_lateral_collision(*model_, jobs[i])};
     }
-    if (visits == goals_.size() && !misses_a_goal) {
-        touch(jobs, held, world_of, flights, is_over);
-    }
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         std::optional<FlightState>& vehicle = vehicles[world_of[i]];
         vehicle = flights[world_of[i]].rejection == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
@@ -227,31 +247,25 @@ std::vector<WorldFlight> WorldFlights::fly_on(std::vector<std::optional<FlightSt
     return flights;
 }
 
-void WorldFlights::touch(const std::vector<FlightJob>& jobs, const Plan& held, const std::vector<std::size_t>& world_of,
-                         std::vector<WorldFlight>& flights, const StopCondition& is_over) {
-    const ReferenceKnot& last = held.reference.back();
-    const PlantModel& plant = model_->tick().plant;
-    const Touch* const touch = touch_at(goals_.back(), plant, level_at(configuration_of(last.point)));
-    if (touch == nullptr) {
-        return;
-    }
+void WorldFlights::touch(std::vector<FlightJob>& jobs, const PlannedTouch& touch) {
     run_parallel(jobs.size(), threads_, [&](std::size_t i) {
-        WorldFlight& flight = flights[world_of[i]];
-        if (flight.rejection != Rejection::none || (is_over && is_over())) {
+        FlightJob& job = jobs[i];
+        if (job.legs.empty() || job.rejection() != Rejection::none || (is_over_ && is_over_())) {
             return;
         }
-        FlightState state = jobs[i].end();
-        flight.rejection =
-            fly_touch(*model_, map_.get(), *touch, last.point, state, {jobs[i].world, last.tick}).rejection;
-        if (flight.rejection == Rejection::collision) {
-            flight.min_clearance_m = 0;
+        FlightLeg& last = job.legs.back();
+        const TouchFlight flown =
+            fly_touch(*model_, map_.get(), touch.touch, touch.base, last.end, {job.world, job.first_tick + touch.tick});
+        job.first_tick += flown.ticks;
+        last.flight.rejection = flown.rejection;
+        if (flown.rejection == Rejection::collision) {
+            last.flight.min_clearance_m = 0;
         }
-        if (flight.rejection == Rejection::none && !meets_goal(goals_.back(), plant, state)) {
-            flight.rejection = Rejection::goal_missed;
+        if (flown.rejection == Rejection::none && !meets_goal(goals_[touch.goal], model_->tick().plant, last.end)) {
+            last.flight.rejection = Rejection::goal_missed;
         }
-        flight.goal = flight.rejection == Rejection::none ? flight.goal : goals_.size() - 1;
     });
-    throw_if_over(is_over);
+    throw_if_over(is_over_);
 }
 
 }  // namespace downwash

@@ -10,6 +10,7 @@
 #include "downwash/base/stop_condition.hpp"
 #include "downwash/controllers/plan.hpp"
 #include "downwash/problems/problem.hpp"
+#include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/flight_batch.hpp"
 #include "downwash/simulation/hover_equilibrium.hpp"
 
@@ -64,19 +65,25 @@ class DOWNWASH_EXPORT WorldFlights {
                                                   std::span<const FlownWorld> worlds,
                                                   const StopCondition& is_over = {});
 
-    /// Moves vehicles on along a plan, from one of its knots to another; a flight that ended stays as it is.
-    /// @param goal number of the goal at which they hover in the end; empty: they are not judged
-    void advance(std::vector<FlightJob>& jobs, const Plan& plan, std::size_t first, std::size_t last,
-                 std::optional<std::size_t> goal);
+    /// Moves vehicles along a whole plan, a leg for each piece of it; none is judged, and a flight that ended stays as
+    /// it is.
+    /// @param touches on its way; what comes of one changes the end of the leg before it
+    void advance(std::vector<FlightJob>& jobs, const Plan& plan, std::span<const PlannedTouch> touches);
+
+    /// The touches of a plan, hover at its last goal left out, through the first `visits` goals of the problem.
+    [[nodiscard]] std::vector<PlannedTouch> touches_of(const Plan& plan, std::size_t visits) const;
 
     [[nodiscard]] const std::vector<Goal>& goals() const noexcept { return goals_; }
     [[nodiscard]] const FlightModel& model() const noexcept { return *model_; }
 
  private:
-    /// How flights that hover where the last goal has its touch go on, and end.
-    /// @param jobs flown up to that hover   @param flights,world_of of each job; what comes of the touch is entered
-    void touch(const std::vector<FlightJob>& jobs, const Plan& held, const std::vector<std::size_t>& world_of,
-               std::vector<WorldFlight>& flights, const StopCondition& is_over);
+    /// Moves vehicles on along a plan, from one of its knots to another. Their job's first tick becomes what touches
+    /// added to that of the plan.
+    /// @param goal number of the goal at which they hover in the end; empty: they are not judged
+    void advance(std::vector<FlightJob>& jobs, const Plan& plan, std::size_t first, std::size_t last,
+                 std::optional<std::size_t> goal);
+    /// Lets vehicles touch that hover where a touch begins.
+    void touch(std::vector<FlightJob>& jobs, const PlannedTouch& touch);
 
     /// Flies the hover at the start in worlds without a known equilibrium.
     void hover_at_start(std::span<const FlownWorld> worlds, const std::vector<std::size_t>& without_equilibrium,

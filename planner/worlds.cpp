@@ -75,7 +75,9 @@ VehiclesOf<Plane> ProblemWorlds::vehicles_after(const Course& before, std::span<
             world_of.push_back(i);
         }
     }
-    own_flights().advance(jobs, before.plan, 0, before.plan.reference.size() - 1, std::nullopt);
+    Plan flown = before.plan;
+    flown.reference.pop_back();  // the hover at its last goal
+    own_flights().advance(jobs, before.plan, own_flights().touches_of(flown, before.goals.size()));
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         vehicles[world_of[i]] = jobs[i].rejection() == Rejection::none ? std::optional(jobs[i].end()) : std::nullopt;
     }
@@ -111,7 +113,8 @@ void ProblemWorlds::look_closely(const Plan& whole, std::size_t visits, std::vec
     for (std::size_t i = 0; i < worlds.size(); ++i) {
         jobs.push_back({starts[i].value_or(FlightState{}), {}, 0, &worlds[i]});
     }
-    close_flights_.advance(jobs, moments, 0, moments.reference.size() - 1, std::nullopt);
+    const std::vector<PlannedTouch> touches = close_flights_.touches_of(whole, visits);
+    close_flights_.advance(jobs, moments, touches);
     throw_if_over(is_over);
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         samples[i].min_clearance_m = min_clearance_m(jobs[i]);
@@ -120,11 +123,10 @@ void ProblemWorlds::look_closely(const Plan& whole, std::size_t visits, std::vec
     std::iota(nearest.begin(), nearest.end(), std::size_t{0});
     std::ranges::stable_sort(nearest, {}, [&](std::size_t i) { return samples[i].min_clearance_m; });
     nearest.resize(std::min(flown_directly, nearest.size()));
-    const bool touches = touch_at(goals.back(), flights_.model().tick().plant, level_at(moments.last())) != nullptr;
     run_parallel(nearest.size(), threads_, [&](std::size_t number) {
         const FlightJob& job = jobs[nearest[number]];
         WorldSample& sample = samples[nearest[number]];
-        if (touches) {
+        if (!touches.empty()) {
             fly_directly(whole, goals, job, sample, is_over);
         } else {
             fly_directly_where_nearest(whole, goals, moments, job, sample, is_over);

@@ -41,7 +41,7 @@ struct MayMeet {
 };
 
 bool may_meet(const Goal& goal, const ArmParameters& arm, const PlaneSquare& square) {
-    if (asks_for_contact(goal)) {
+    if (may_touch(goal)) {
         return true;
     }
     const auto all = alternatives(goal);

@@ -51,9 +51,6 @@ void for_each_goal(const Problem& p, const Visit& visit) {
     for (std::size_t i = 0; i < p.goals_before.size(); ++i) {
         visit(p.goals_before[i], name("goal", i));
     }
-    if (asks_for_contact(p.goal)) {  // its alternatives stand in no file
-        return;
-    }
     if (!p.goals_before.empty()) {
         visit(p.goal, name("goal", p.goals_before.size()));
     } else if (p.goal.any_of.empty()) {
@@ -90,7 +87,6 @@ std::vector<KeyError> too_many_goals(const Problem& p) {
 }
 
 std::vector<KeyError> unclear_goals(const Problem& p) {
-    constexpr auto only = "asks for contact as one of several goals: expected contact for the only goal";
     std::vector<KeyError> errors;
     if (p.targets.empty() && (p.return_to || p.energy_budget_j)) {
         errors.push_back({"goal", "has a place to return to or an energy budget, and no targets in any order"});
@@ -98,13 +94,7 @@ std::vector<KeyError> unclear_goals(const Problem& p) {
     if (p.return_to && !std::holds_alternative<ConfigurationGoal>(p.return_to->kind)) {
         return {{std::string(key_of_return), "is no configuration: expected one"}};
     }
-    if (asks_for_contact(p.goal) && !(p.goals_before.empty() && p.targets.empty())) {
-        errors.push_back({"goal", only});
-    }
     append(errors, in_each_goal(p, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
-               if (asks_for_contact(goal)) {
-                   return {{key, only}};
-               }
                if (!goal.any_of.empty()) {
                    return {{key, "has alternatives: expected any_of for the only goal, and not within any_of"}};
                }
@@ -156,22 +146,22 @@ std::vector<KeyError> goals_out_of_reach(const ProblemCheck& check) {
 }
 
 std::vector<KeyError> contacts_without_place(const ProblemCheck& check) {
-    const Problem& p = check.problem();
-    const auto* contact = std::get_if<ContactGoal>(&p.goal.kind);
-    if (contact == nullptr) {
-        return {};
-    }
     std::vector<std::string_view> names;
-    for (const Obstacle& obstacle : p.obstacles) {
+    for (const Obstacle& obstacle : check.problem().obstacles) {
         names.push_back(obstacle.name);
     }
-    const std::string& wanted = contact->obstacle;
-    if (std::find(names.begin(), names.end(), wanted) == names.end()) {
-        return {{"goal.contact.obstacle",
-                 "is '" + excerpt(wanted) + "': expected the name of an obstacle" + did_you_mean(wanted, names)}};
-    }
-    const std::string reason = find_touches(check).reason;
-    return reason.empty() ? std::vector<KeyError>() : std::vector<KeyError>{{"goal.contact", reason}};
+    return in_each_goal(check, [&](const Goal& goal, const std::string& key) -> std::vector<KeyError> {
+        if (!asks_for_contact(goal)) {
+            return {};
+        }
+        const std::string& wanted = std::get<ContactGoal>(goal.kind).obstacle;
+        if (std::ranges::find(names, wanted) == names.end()) {
+            return {{kind_key(goal, key) + ".obstacle",
+                     "is '" + excerpt(wanted) + "': expected the name of an obstacle" + did_you_mean(wanted, names)}};
+        }
+        const std::string reason = find_touches(check, goal).reason;
+        return reason.empty() ? std::vector<KeyError>() : std::vector<KeyError>{{kind_key(goal, key), reason}};
+    });
 }
 
 /// A soft law takes up the force of a touch slowly.
@@ -182,7 +172,9 @@ std::vector<KeyError> touches_that_settle_late(const ProblemCheck& check) {
         [](const auto& law) { return std::min(law.position_stiffness_1_s2(0), law.position_stiffness_1_s2(1)); },
         controllers::flown_law(p.robot.controller.law));
     const double settling_s = touch_settling_constants / (force_loop_share * std::sqrt(stiffness_1_s2));
-    if (!asks_for_contact(p.goal) || settling_s <= longest_s) {
+    bool touches = false;
+    for_each_goal(p, [&](const Goal& goal, const std::string& /*key*/) { touches = touches || may_touch(goal); });
+    if (!touches || settling_s <= longest_s) {
         return {};
     }
     return {{"robot.controller", "answers a metre of position error with " + rounded(stiffness_1_s2) +

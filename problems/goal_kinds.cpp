@@ -29,7 +29,7 @@ class KindRows {
         add(parameters::alternative<Kind, Goal>(
             name, description, [](auto& goal) -> auto& { return goal.kind; }));
         rows_.back().count = [](const Goal& goal, std::size_t) -> std::size_t {
-            return std::holds_alternative<Kind>(goal.kind) && (goal.any_of.empty() || asks_for_contact(goal)) ? 1 : 0;
+            return std::holds_alternative<Kind>(goal.kind) && goal.any_of.empty() ? 1 : 0;
         };
     }
 
@@ -92,7 +92,7 @@ void add_pose(KindRows<ConfigurationGoal> rows) {
     rows.add(rows.size("tolerance_deg", "deviation of the arm that is near enough", 180, &G::tolerance_rad));
 }
 
-void add_keys(GoalRows& rows, const ConfigurationGoal* kind, bool /*is_only*/) {
+void add_keys(GoalRows& rows, const ConfigurationGoal* kind) {
     add_pose({rows, name(kind), "the vehicle and its arm"});
 }
 
@@ -147,7 +147,7 @@ constexpr std::string_view name(const EndEffectorGoal* /*kind*/) {
     return "end_effector";
 }
 
-void add_keys(GoalRows& all, const EndEffectorGoal* kind, bool /*is_only*/) {
+void add_keys(GoalRows& all, const EndEffectorGoal* kind) {
     using G = EndEffectorGoal;
     KindRows<G> rows(all, name(kind), "the end effector at a point");
     rows.add(rows.position("x_m", "along the plane", &G::x_m).is_required());
@@ -220,10 +220,7 @@ constexpr std::string_view name(const ContactGoal* /*kind*/) {
     return "contact";
 }
 
-void add_keys(GoalRows& all, const ContactGoal* kind, bool is_only) {
-    if (!is_only) {
-        return;
-    }
+void add_keys(GoalRows& all, const ContactGoal* kind) {
     using G = ContactGoal;
     KindRows<G> rows(all, name(kind), "a surface to touch and press on for hold_s, from where the robot fits best");
     rows.add(parameters::text<Goal>(rows.path("obstacle"), "name of the obstacle", KindRows<G>::in(&G::obstacle))
@@ -261,15 +258,15 @@ Errors out_of_reach(const ContactGoal& /*contact*/, const Goal& /*goal*/, const 
 }
 
 template <class... Kinds>
-void add_all(GoalRows& rows, bool is_only, const std::variant<Kinds...>* /*kind*/) {
-    (add_keys(rows, static_cast<const Kinds*>(nullptr), is_only), ...);
+void add_all(GoalRows& rows, const std::variant<Kinds...>* /*kind*/) {
+    (add_keys(rows, static_cast<const Kinds*>(nullptr)), ...);
 }
 
 }  // namespace
 
-std::vector<Parameter<Goal>> goal_kind_rows(bool is_only) {
+std::vector<Parameter<Goal>> goal_kind_rows() {
     GoalRows rows;
-    add_all(rows, is_only, static_cast<const GoalKind*>(nullptr));
+    add_all(rows, static_cast<const GoalKind*>(nullptr));
     return rows;
 }
 

@@ -12,8 +12,7 @@
 namespace downwash {
 
 /// The keys of every kind of goal, below those of the goal.
-/// @param is_only without it the goal is one of several, which none that asks for contact can be
-[[nodiscard]] std::vector<Parameter<Goal>> goal_kind_rows(bool is_only);
+[[nodiscard]] std::vector<Parameter<Goal>> goal_kind_rows();
 
 /// The keys of a configuration, below what is one without its group.
 [[nodiscard]] std::vector<Parameter<Goal>> configuration_rows();

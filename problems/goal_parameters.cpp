@@ -17,26 +17,20 @@ bool has_targets(const Problem& p, std::size_t /*index*/) {
     return !p.targets.empty();
 }
 
-/// Adds rows of goals.
+/// Every kind of goal, of which exactly one is given.
 /// @param goal names the Goal that has them
 template <class GoalMember>
-void add(Rows& rows, const std::vector<Parameter<Goal>>& more, const std::string& path, GoalMember goal) {
-    for (const Parameter<Goal>& row : more) {
+void add_kinds(Rows& rows, const std::string& path, GoalMember goal) {
+    for (const Parameter<Goal>& row : goal_kind_rows()) {
         rows.push_back(parameters::nested<Problem>(row, path + ".", goal));
     }
-}
-
-/// Every kind of goal, of which exactly one is given, for a goal that is one of several.
-template <class GoalMember>
-void add_kinds(Rows& rows, const std::string& path, GoalMember goal) {
-    add(rows, goal_kind_rows(false), path, goal);
 }
 
 /// Every kind of goal for the only goal, which is there unless targets replace it.
 template <class GoalMember>
 void add_kinds_of_only(Rows& rows, const std::string& path, GoalMember goal) {
     const auto first = static_cast<std::ptrdiff_t>(rows.size());
-    add(rows, goal_kind_rows(true), path, goal);
+    add_kinds(rows, path, goal);
     std::for_each(rows.begin() + first, rows.end(), [](Parameter<Problem>& row) {
         if (row.count) {
             row.count = [count = row.count](const Problem& p, std::size_t i) {
@@ -75,15 +69,11 @@ Parameter<Problem> goal_group() {
 /// @param goal names the Goal that has them
 template <class GoalMember>
 void add_choice(Rows& rows, const std::string& path, GoalMember goal) {
-    auto any_of =
+    rows.push_back(
         parameters::list<Problem>(
             path + ".any_of",
             "goals of which any will do", [goal](auto& p, std::size_t i) -> auto& { return goal(p, i).any_of; })
-            .is_exclusive();
-    any_of.count = [goal](const Problem& p, std::size_t i) {
-        return asks_for_contact(goal(p, i)) ? 0 : goal(p, i).any_of.size();
-    };
-    rows.push_back(std::move(any_of));
+            .is_exclusive());
     const auto alternative = [goal](auto& p, std::size_t i) -> auto& {
         return goal(p, outer_element(i)).any_of[inner_element(i)];
     };
@@ -123,7 +113,7 @@ void add_goal_rows(Rows& rows) {
     add_choice(rows, "goal", only);
     add_any_order(rows);
     rows.push_back(hold("goal", only).only("without any_of and in_any_order", [](const Problem& p, std::size_t) {
-        return (p.goal.any_of.empty() || asks_for_contact(p.goal)) && p.targets.empty();
+        return p.goal.any_of.empty() && p.targets.empty();
     }));
 
     const auto in_turn = [](auto& p, std::size_t i) -> auto& {

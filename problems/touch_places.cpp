@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <string>
 #include <variant>
 
@@ -36,12 +37,16 @@ constexpr Approach ways[] = {upward, {{1, 0}, 0}, {{-1, 0}, std::numbers::pi}, {
 /// Why a place is none, from the first test to the last.
 enum class Flaw { unseen, uneven, outside, blocked, unflyable };
 
-/// Finds the places of one problem.
+/// Finds the places of one goal.
 class TouchSearch {
  public:
-    TouchSearch(const ProblemCheck& check, const ContactGoal& contact)
-        : problem_(check.problem()), contact_(contact), check_(check), target_(obstacle()) {
-        if (contact.part == TouchingPart::frame) {
+    TouchSearch(const ProblemCheck& check, const Goal& goal)
+        : problem_(check.problem()),
+          contact_(std::get<ContactGoal>(goal.kind)),
+          hold_s_(goal.hold_s),
+          check_(check),
+          target_(obstacle()) {
+        if (contact_.part == TouchingPart::frame) {
             frame_points_m_ = frame_points(problem_.robot);
         }
     }
@@ -187,7 +192,7 @@ class TouchSearch {
         touch.force_tolerance_n = contact_.tolerance_n();
         touch.standoff_m = contact_.standoff_m;
         touch.speed_m_s = contact_.speed_m_s;
-        touch.hold_s = problem_.goal.hold_s;
+        touch.hold_s = hold_s_;
         goal.hold_s = touch_hover_s;
         const PlaneVector waiting{touch.surface_m.x + contact_.standoff_m * touch.normal.x,
                                   touch.surface_m.z + contact_.standoff_m * touch.normal.z};
@@ -288,6 +293,7 @@ class TouchSearch {
 
     const Problem& problem_;
     const ContactGoal& contact_;
+    double hold_s_;
     const ProblemCheck& check_;
     Scene target_;
     std::vector<PlaneVector> frame_points_m_;
@@ -296,17 +302,37 @@ class TouchSearch {
     Flaw flaw_ = Flaw::unseen;
 };
 
+void find_places(const ProblemCheck& check, Goal& goal) {
+    goal.places.clear();
+    if (asks_for_contact(goal)) {
+        goal.places = find_touches(check, goal).places;
+        return;
+    }
+    for (Goal& each : goal.any_of) {
+        find_places(check, each);
+    }
+    if (may_touch(goal)) {
+        for (const Goal& each : goal.any_of) {
+            const std::span<const Goal> places = alternatives(each);
+            goal.places.insert(goal.places.end(), places.begin(), places.end());
+        }
+    }
+}
+
 }  // namespace
 
-TouchPlaces find_touches(const ProblemCheck& check) {
-    return TouchSearch(check, std::get<ContactGoal>(check.problem().goal.kind)).places();
+TouchPlaces find_touches(const ProblemCheck& check, const Goal& goal) {
+    return TouchSearch(check, goal).places();
 }
 
 Problem with_touches(Problem problem) {
-    if (asks_for_contact(problem.goal)) {
-        std::vector<Goal> places = find_touches(ProblemCheck(problem)).places;
-        problem.goal.any_of = std::move(places);
+    const ProblemCheck check(problem);  // which asks it for no goal
+    for (std::vector<Goal>* const goals : {&problem.goals_before, &problem.targets}) {
+        for (Goal& goal : *goals) {
+            find_places(check, goal);
+        }
     }
+    find_places(check, problem.goal);
     return problem;
 }
 

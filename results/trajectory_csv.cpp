@@ -27,7 +27,7 @@ std::string header(const Execution& execution) {
             names += rotor + "_lag_n";
         }
     }
-    return names + (execution.touch ? ",contact_force_n" : "");
+    return names + (has_touch(execution) ? ",contact_force_n" : "");
 }
 constexpr std::size_t clearance_column = 19;
 
@@ -57,7 +57,7 @@ std::vector<double> numbers_of(const Execution& execution, const FlightRow& row)
             numbers.push_back(row.rotor_lag_n[i]);
         }
     }
-    if (execution.touch) {
+    if (has_touch(execution)) {
         numbers.push_back(row.contact_force_n);
     }
     return numbers;

@@ -14,177 +14,21 @@
 #include "downwash/simulation/between_ticks.hpp"
 #include "downwash/simulation/direct_field.hpp"
 #include "downwash/simulation/flight_loop.hpp"
-#include "downwash/simulation/rule_checks.hpp"
-#include "downwash/simulation/surroundings.hpp"
+#include "downwash/simulation/flight_recorder.hpp"
 #include "downwash/simulation/touch_flight.hpp"
 #include "downwash/simulation/vehicle_effect.hpp"
 
 namespace downwash {
 namespace {
 
-using Given = controllers::Actuation<double>;
+using simulation::FlightRecorder;
+using Given = FlightRecorder::Given;
 
 /// Few: among thousands of obstacles a tick takes milliseconds.
 constexpr std::int64_t ticks_between_questions = 8;
 
 constexpr std::string_view outcome_names[] = {"ok",          "collision",  "unstable", "left_flyable_area",
                                               "goal_missed", "over_budget"};
-
-/// Writes the log of one flight while it is flown.
-class Recorder {
- public:
-    /// @param world nullptr: the plain tick
-    Recorder(const FlightModel& model, const FlownWorld* world, simulation::FlightEffect& effect, Execution& execution)
-        : model_(model),
-          plant_(model.tick().plant),
-          world_(world),
-          surroundings_(world != nullptr ? world->numbers : model.nominal_world().numbers, {}, effect,
-                        model.tick().tilt_loss),
-          execution_(execution) {}
-
-    /// From here on the vehicle may touch a surface: rows tell the force, and obstacles see the vehicle a little off
-    /// it.
-    void expect(const Touch& touch) { touch_ = &touch; }
-
-    /// From here on counts the states at which the robot is in unseen space, if the scene has any.
-    void count_unseen() {
-        if (const std::shared_ptr<const Scene> unseen = model_.scene().unseen_space()) {
-            unseen_.emplace(unseen, model_.plane(), model_.robot().shape());
-        }
-    }
-    /// The share of those states in all that were counted; empty without unseen space.
-    [[nodiscard]] std::optional<double> unseen_share() const {
-        return unseen_ ? std::optional(static_cast<double>(unseen_states_) / static_cast<double>(states_))
-                       : std::nullopt;
-    }
-
-    /// Flown so far.
-    [[nodiscard]] std::int64_t ticks() const noexcept { return tick_; }
-
-    /// @return false if the commands are beyond max_result, and the row holds none
-    bool add_row(const FlightState& state, const ReferencePoint& reference, const Given& given) {
-        FlightRow row = row_of(state, reference, given);
-        const bool is_usable = is_in_range(row) && given.saturation <= max_result;
-        if (!is_usable) {
-            row = row_of(state, reference, Given{});
-        }
-        ++tick_;
-        execution_.rows.push_back(row);
-        execution_.max_saturation = std::max(execution_.max_saturation, is_usable ? given.saturation : max_result);
-        return is_usable;
-    }
-
-    /// Looks at a new state: what it means for the flight, and for the figures of the whole.
-    Rejection judge(const FlightState& state, const ReferencePoint& reference, bool is_first = false) {
-        const PlanarPose pose = among_obstacles(pose_of(state), world_);
-        clearance_m_ = model_.executed_clearance_m(pose);
-        if (unseen_) {
-            ++states_;
-            unseen_states_ += unseen_->is_nearer_than(pose, 0) ? 1 : 0;
-        }
-        const PlanarPose checked = touch_ != nullptr ? simulation::off_surface(pose, *touch_, depth_m_) : pose;
-        const double checked_m = touch_ != nullptr ? model_.executed_clearance_m(checked) : clearance_m_;
-        const PlanarPose checked_before = std::exchange(checked_, checked);
-        const double checked_before_m = std::exchange(checked_m_, checked_m);
-        if (touch_ == nullptr) {
-            execution_.min_clearance_m = std::min(execution_.min_clearance_m, clearance_m_);
-        }
-        execution_.max_tracking_error_m = std::max(execution_.max_tracking_error_m, tracking_error_m(state, reference));
-        if (!is_stable(state, reference)) {
-            return Rejection::unstable;
-        }
-        if (checked_m <= 0) {
-            execution_.min_clearance_m = std::min(execution_.min_clearance_m, checked_m);
-            return Rejection::collision;
-        }
-        if (!is_first) {
-            const double between_m = simulation::least_clearance_between_m(
-                model_, checked_before, checked_before_m, checked, checked_m, simulation::executed_clearance_m);
-            if (between_m <= 0) {
-                execution_.min_clearance_m = std::min(execution_.min_clearance_m, between_m);
-                return Rejection::collision;
-            }
-        }
-        if (execution_.aero && !is_flyable(model_, pose)) {
-            return Rejection::flyable_area;
-        }
-        return Rejection::none;
-    }
-
-    /// The same of a tick beside the surface that is touched.
-    Rejection after_touching_tick(const FlightState& before, const ReferencePoint& reference, const Given& given,
-                                  const FlightState& next, const ReferencePoint& next_reference,
-                                  const dynamics::ContactTickRecord& contact) {
-        // The row is that of the state before, and of the tick that led to it.
-        depth_m_ = contact.depth_m;
-        const Rejection rejection = after_tick(before, reference, given, next, next_reference);
-        contact_force_n_ = contact.normal_impulse_n_s / model_.tick().tick_s;
-        return rejection;
-    }
-
-    Rejection after_tick(const FlightState& before, const ReferencePoint& reference, const Given& given,
-                         const FlightState& next, const ReferencePoint& next_reference) {
-        if (!add_row(before, reference, given) || !are_within(next.plant, max_state)) {
-            return Rejection::unstable;
-        }
-        simulation::add_tick(execution_, plant_, before, next);
-        const Rejection rejection = judge(next, next_reference);
-        execution_.clearance_integral += model_.tick().tick_s * clearance_density(clearance_m_);
-        return rejection;
-    }
-
- private:
-    static bool is_in_range(FlightRow row) {
-        row.clearance_m = std::isinf(row.clearance_m) ? 0 : row.clearance_m;
-        return are_within(row, max_result);
-    }
-
-    [[nodiscard]] FlightRow row_of(const FlightState& state, const ReferencePoint& reference, const Given& given) {
-        FlightRow row;
-        row.t_s = static_cast<double>(tick_) * model_.tick().tick_s;
-        row.reference = reference;
-        std::copy(std::begin(state.plant.q), std::end(state.plant.q), row.q);
-        std::copy(std::begin(state.plant.u), std::end(state.plant.u), row.u);
-        const auto attitude = dynamics::attitude(plant_, row.q[2], row.q[3]);
-        const bool has_lag = plant_.rotor_time_constant_s > 0;
-        const double* thrust_n = has_lag ? state.plant.thrust_n : given.command.thrust_n;
-        for (int i = 0; i < plant_.rotor_count; ++i) {
-            const auto hub = dynamics::rotor_position(plant_, attitude, row.q[0], row.q[1], i);
-            row.rotor_command_n[i] = given.command.thrust_n[i];
-            row.rotor_lag_n[i] = state.plant.thrust_n[i];
-            row.rotor_factor[i] = surroundings_.thrust_ratio(i, hub, attitude.sin_pitch);
-            row.thrust_command_n += row.rotor_command_n[i];
-            row.pitch_torque_command_nm -= plant_.rotor_x_m[i] * row.rotor_command_n[i];
-            const double free_air_n = surroundings_.thrust_scale(i) * thrust_n[i];
-            row.thrust_n += row.rotor_factor[i] * free_air_n;
-            row.pitch_torque_nm -= plant_.rotor_x_m[i] * row.rotor_factor[i] * free_air_n;
-        }
-        row.arm_torque_nm = given.command.joint_torque_nm;
-        row.clearance_m = clearance_m_;
-        const auto tip = dynamics::end_effector_position(plant_, attitude, row.q[0], row.q[1]);
-        row.end_effector_x_m = tip.x;
-        row.end_effector_z_m = tip.z;
-        row.power_w = dynamics::rotor_power(plant_, thrust_n) + std::abs(row.arm_torque_nm * row.u[3]);
-        row.energy_j = state.plant.energy_j;
-        row.contact_force_n = contact_force_n_;
-        return row;
-    }
-
-    const FlightModel& model_;
-    const PlantModel& plant_;
-    const FlownWorld* world_;
-    simulation::WorldSurroundings<double, simulation::FlightEffect> surroundings_;
-    Execution& execution_;
-    std::optional<CollisionChecker> unseen_;  ///< the robot in unseen space
-    std::int64_t states_ = 0, unseen_states_ = 0;
-    std::int64_t tick_ = 0;
-    double clearance_m_ = std::numeric_limits<double>::infinity();
-    PlanarPose checked_;    ///< for collisions, at the last state
-    double checked_m_ = 0;  ///< its clearance
-    const Touch* touch_ = nullptr;
-    double depth_m_ = 0;          ///< of the deepest point in the surface that is touched, at the last state
-    double contact_force_n_ = 0;  ///< over the last tick
-};
 
 std::vector<ReferenceSegment> segments_with_hold(const std::vector<ReferenceKnot>& knots, std::int64_t hold,
                                                  double tick_s) {
@@ -208,6 +52,24 @@ std::vector<std::int64_t> end_ticks(const FlightModel& model, const std::vector<
     return ends;
 }
 
+/// See touches_of(). @param ends see end_ticks()
+std::vector<PlannedTouch> touches_after(const FlightModel& model, const std::vector<ReferenceKnot>& knots,
+                                        std::span<const Goal> goals, const std::vector<std::int64_t>& ends) {
+    std::vector<PlannedTouch> touches;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const bool is_last = i + 1 == ends.size();
+        if (is_last && ends.size() < goals.size()) {
+            break;  // no hover at a goal
+        }
+        const ReferencePoint& at =
+            (is_last ? knots.back() : *std::ranges::find(knots, ends[i], &ReferenceKnot::tick)).point;
+        if (const Touch* const touch = touch_at(goals[i], model.tick().plant, level_at(configuration_of(at)))) {
+            touches.push_back({ends[i], i, *touch, at});
+        }
+    }
+    return touches;
+}
+
 /// What became of a goal that was held up to a tick; of one that was not, where the flight ended.
 /// @param end beyond all rows: it was not
 GoalVisit visit_of(const Goal& goal, std::int64_t end, const FlightModel& model, const std::vector<FlightRow>& rows) {
@@ -225,17 +87,28 @@ GoalVisit visit_of(const Goal& goal, std::int64_t end, const FlightModel& model,
     return visit;
 }
 
-/// @param ends see end_ticks()
+/// A touch that was flown.
+struct FlownTouch {
+    std::size_t goal = 0;
+    std::int64_t ticks = 0;
+    TouchRecord record;
+};
+
+/// @param ends see end_ticks(); touches let the rows of later ones come later
 void judge_goals(const FlightModel& model, std::span<const Goal> goals, const std::vector<std::int64_t>& ends,
-                 Execution& execution) {
+                 const std::vector<FlownTouch>& touches, Execution& execution) {
+    std::int64_t touched = 0;  // ticks
     for (std::size_t i = 0; i < goals.size(); ++i) {
-        const std::int64_t end = i < ends.size() ? ends[i] : std::numeric_limits<std::int64_t>::max();
+        const std::int64_t end = i < ends.size() ? ends[i] + touched : std::numeric_limits<std::int64_t>::max();
         GoalVisit visit = visit_of(goals[i], end, model, execution.rows);
-        if (execution.touch && i + 1 == goals.size()) {  // back where it touched from
+        const auto touch = std::ranges::find(touches, i, &FlownTouch::goal);
+        if (touch != touches.end()) {  // back where it touched from
+            touched += touch->ticks;
             const auto last = static_cast<std::int64_t>(execution.rows.size()) - 1;
-            const GoalVisit after = visit_of(goals[i], last, model, execution.rows);
-            visit.is_met = visit.is_met && after.is_met && execution.touch->is_met;
+            const GoalVisit after = visit_of(goals[i], std::min(end + touch->ticks, last), model, execution.rows);
+            visit.is_met = visit.is_met && after.is_met && touch->record.is_met;
             visit.error_m = std::max(visit.error_m, after.error_m);
+            visit.touch = touch->record;
         }
         execution.goal_error_m = std::max(execution.goal_error_m, visit.error_m);
         if (execution.outcome == Outcome::ok && !visit.is_met) {
@@ -245,21 +118,72 @@ void judge_goals(const FlightModel& model, std::span<const Goal> goals, const st
     }
 }
 
-/// Flies a segment tick by tick, with a row for each.
-/// @param state at its beginning, replaced by that at its end
-Rejection fly_directly(const FlightModel& model, const FlownWorld* world, std::int64_t first_tick,
-                       const ReferenceSegment& segment, simulation::FlightEffect& effect, const StopCondition& is_over,
-                       FlightState& state, Recorder& recorder) {
-    const auto after = [&](const FlightState& before, const ReferencePoint& at, const Given& given,
-                           const FlightState& next, const ReferencePoint& next_reference) {
+/// One flight with direct aerodynamics, tick by tick, with a row for each.
+struct DirectFlight {
+    const FlightModel& model;
+    const FlownWorld* world;
+    std::int64_t first_tick;
+    simulation::FlightEffect& effect;
+    const StopCondition& is_over;
+    FlightRecorder& recorder;
+    FlightState state;         ///< vehicle now
+    ReferencePoint reference;  ///< now
+    std::vector<FlownTouch> touches{};
+
+    /// Flies segments, and the touches that follow at ends of them. @param after see execute_part()
+    Rejection fly(std::span<const ReferenceSegment> segments, std::span<const PlannedTouch> after) {
+        Rejection rejection = Rejection::none;
+        std::int64_t tick = 0;
+        for (const ReferenceSegment& segment : segments) {
+            rejection = fly(segment);
+            tick += segment.ticks();
+            const auto touch = std::ranges::find(after, tick, &PlannedTouch::tick);
+            if (rejection == Rejection::none && touch != after.end()) {
+                rejection = fly(*touch);
+            }
+            if (rejection != Rejection::none) {
+                break;
+            }
+        }
+        return rejection;
+    }
+
+ private:
+    void ask() const {
         if (recorder.ticks() % ticks_between_questions == 0) {
             throw_if_over(is_over);
         }
-        return recorder.after_tick(before, at, given, next, next_reference);
-    };
-    return simulation::FlightLoop(model.tick(), world, effect)
-        .fly(first_tick + recorder.ticks(), segment, state, after, dynamics::RefinedStep{});
-}
+    }
+
+    Rejection fly(const ReferenceSegment& segment) {
+        const auto after = [&](const FlightState& before, const ReferencePoint& at, const Given& given,
+                               const FlightState& next, const ReferencePoint& next_reference) {
+            ask();
+            reference = next_reference;
+            return recorder.after_tick(before, at, given, next, next_reference);
+        };
+        return simulation::FlightLoop(model.tick(), world, effect)
+            .fly(first_tick + recorder.ticks(), segment, state, after, dynamics::RefinedStep{});
+    }
+
+    Rejection fly(const PlannedTouch& planned) {
+        const auto after = [&](const FlightState& before, const ReferencePoint& at, const Given& given,
+                               const FlightState& next, const ReferencePoint& next_reference,
+                               const dynamics::ContactTickRecord& contact) {
+            ask();
+            reference = next_reference;
+            return recorder.after_touching_tick(before, at, given, next, next_reference, contact);
+        };
+        FlownTouch& touch = touches.emplace_back(FlownTouch{planned.goal, -recorder.ticks(), {}});
+        recorder.expect(&planned.touch);
+        const Rejection rejection =
+            simulation::fly_touch_ticks(model, world, first_tick + recorder.ticks(), planned.touch, planned.base,
+                                        effect, state, touch.record, after);
+        recorder.expect(nullptr);
+        touch.ticks += recorder.ticks();
+        return rejection;
+    }
+};
 
 Execution execute_with(const FlightModel& model, const FlightState& start, const std::vector<ReferenceKnot>& knots,
                        std::span<const Goal> goals, bool aero, const FlightWorld& in, const StopCondition& is_over,
@@ -272,51 +196,29 @@ Execution execute_with(const FlightModel& model, const FlightState& start, const
     execution.has_rotor_lag = model.tick().plant.rotor_time_constant_s > 0;
     execution.min_clearance_m = std::numeric_limits<double>::infinity();
 
-    Recorder recorder(model, world, effect, execution);
+    FlightRecorder recorder(model, world, effect, execution);
     recorder.count_unseen();
-    const simulation::FlightLoop loop(model.tick(), world, effect);
-    FlightState state = start;
-    ReferencePoint reference = knots.front().point;
-    Rejection rejection = recorder.judge(state, reference, true);
+    DirectFlight flight{model, world, in.first_tick, effect, is_over, recorder, start, knots.front().point};
+    Rejection rejection = recorder.judge(start, knots.front().point, true);
     const std::vector<std::int64_t> ends = end_ticks(model, knots, goals);
-    const std::int64_t hold = ends.back() - knots.back().tick;
-    for (const ReferenceSegment& segment : segments_with_hold(knots, hold, model.tick().tick_s)) {
-        if (rejection != Rejection::none) {
-            break;
-        }
-        const std::int64_t begin = recorder.ticks();
-        rejection = fly_directly(model, world, in.first_tick, segment, effect, is_over, state, recorder);
-        reference = segment.at_tick(recorder.ticks() - begin);
-    }
-    const Touch* const touch = ends.size() == goals.size()
-                                   ? touch_at(goals.back(), model.tick().plant, level_at(configuration_of(reference)))
-                                   : nullptr;
-    if (touch != nullptr && rejection == Rejection::none) {
-        recorder.expect(*touch);
-        execution.touch.emplace();
-        rejection = simulation::fly_touch_ticks(
-            model, world, in.first_tick + recorder.ticks(), *touch, reference, effect, state, *execution.touch,
-            [&](const FlightState& before, const ReferencePoint& at, const Given& given, const FlightState& next,
-                const ReferencePoint& next_reference, const dynamics::ContactTickRecord& contact) {
-                if (recorder.ticks() % ticks_between_questions == 0) {
-                    throw_if_over(is_over);
-                }
-                reference = next_reference;
-                return recorder.after_touching_tick(before, at, given, next, next_reference, contact);
-            });
+    if (rejection == Rejection::none) {
+        const std::int64_t hold = ends.back() - knots.back().tick;
+        rejection =
+            flight.fly(segments_with_hold(knots, hold, model.tick().tick_s), touches_after(model, knots, goals, ends));
     }
     // What the controller commands at the end is part of the last row; nothing is flown with it.
-    if (execution.rows.empty() || are_within(state.plant, max_state)) {
+    if (execution.rows.empty() || are_within(flight.state.plant, max_state)) {
         Given given{};
-        static_cast<void>(loop.quiet_tick(state, reference, given));
-        recorder.add_row(state, reference, given);
+        const simulation::FlightLoop loop(model.tick(), world, effect);
+        static_cast<void>(loop.quiet_tick(flight.state, flight.reference, given));
+        recorder.add_row(flight.state, flight.reference, given);
     }
 
     execution.outcome = outcome_of(rejection);
     execution.energy_j = execution.rows.back().energy_j;
     execution.duration_s = execution.rows.back().t_s;
     execution.unseen_share = recorder.unseen_share();
-    judge_goals(model, goals, ends, execution);
+    judge_goals(model, goals, ends, flight.touches, execution);
     return execution;
 }
 
@@ -367,6 +269,15 @@ std::int64_t hold_ticks(const Goal& goal, const FlightModel& model, const Refere
     return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(hold_s / model.tick().tick_s - 1e-9)));
 }
 
+std::vector<PlannedTouch> touches_of(const FlightModel& model, const std::vector<ReferenceKnot>& knots,
+                                     std::span<const Goal> goals) {
+    return touches_after(model, knots, goals, end_ticks(model, knots, goals));
+}
+
+bool has_touch(const Execution& execution) noexcept {
+    return std::ranges::any_of(execution.goals, [](const GoalVisit& visit) { return visit.touch.has_value(); });
+}
+
 std::vector<std::size_t> hover_ends(const FlightModel& model, const std::vector<ReferenceKnot>& knots,
                                     std::span<const Goal> goals) {
     std::vector<std::size_t> ends;
@@ -400,23 +311,21 @@ Execution execute(const FlightModel& model, const FlightState& start, const std:
 }
 
 FlightPart execute_part(const FlightModel& model, const FlightState& start, std::span<const ReferenceSegment> segments,
-                        bool aero, const FlightWorld& in, const StopCondition& is_over) {
+                        bool aero, const FlightWorld& in, const StopCondition& is_over,
+                        std::span<const PlannedTouch> touches) {
     assert(!segments.empty());
     const FlownWorld* const world = flown_world(model, in.world);
     const std::unique_ptr<simulation::FlightEffect> effect = effect_of(model, aero);
     Execution part;
     part.aero = aero && model.has_effects();
     part.min_clearance_m = std::numeric_limits<double>::infinity();
-    Recorder recorder(model, world, *effect, part);
-    FlightState state = start;
-    Rejection rejection = recorder.judge(state, segments.front().from(), true);
-    for (const ReferenceSegment& segment : segments) {
-        if (rejection != Rejection::none) {
-            break;
-        }
-        rejection = fly_directly(model, world, in.first_tick, segment, *effect, is_over, state, recorder);
+    FlightRecorder recorder(model, world, *effect, part);
+    DirectFlight flight{model, world, in.first_tick, *effect, is_over, recorder, start, segments.front().from()};
+    Rejection rejection = recorder.judge(start, segments.front().from(), true);
+    if (rejection == Rejection::none) {
+        rejection = flight.fly(segments, touches);
     }
-    return {rejection, part.min_clearance_m, std::move(state)};
+    return {rejection, part.min_clearance_m, std::move(flight.state)};
 }
 
 std::optional<FlightState> hovering_start(const FlightModel& model, const FlightState& start, bool aero,

@@ -110,7 +110,7 @@ void widen(EndEffectorGoal& goal, double factor) {
     widen_place(goal, factor);
 }
 
-// A contact: the robot is at one of its places, which are its alternatives, and nowhere as long as they are not found.
+// A contact: the robot is at one of its places, and nowhere as long as they are not found.
 
 GoalTolerance tolerance(const ContactGoal& goal) {
     return {goal.tolerance_m, goal.tolerance_m, true, 1};
@@ -147,7 +147,14 @@ double distance_m(const GoalDeviation& d) {
 
 }  // namespace
 
+bool may_touch(const Goal& goal) noexcept {
+    return asks_for_contact(goal) || std::ranges::any_of(goal.any_of, asks_for_contact);
+}
+
 std::span<const Goal> alternatives(const Goal& goal) noexcept {
+    if (!goal.places.empty()) {
+        return goal.places;
+    }
     return goal.any_of.empty() ? std::span<const Goal>(&goal, 1) : std::span<const Goal>(goal.any_of);
 }
 
@@ -190,6 +197,7 @@ GoalDrawing drawing_of(const Goal& goal) {
 
 void raise_goal(Goal& goal, double by_m) {
     std::visit([&](auto& kind) { lift(kind, by_m); }, goal.kind);
+    goal.places.clear();
     for (Goal& each : goal.any_of) {
         raise_goal(each, by_m);
     }
@@ -197,6 +205,7 @@ void raise_goal(Goal& goal, double by_m) {
 
 void widen_goal(Goal& goal, double factor) {
     std::visit([&](auto& kind) { widen(kind, factor); }, goal.kind);
+    goal.places.clear();
     for (Goal& each : goal.any_of) {
         widen_goal(each, factor);
     }
@@ -209,14 +218,11 @@ GoalError goal_error(const Goal& goal, const PlantModel& model, const PlanarPose
 }
 
 const Goal& nearest_goal(const Goal& goal, const PlantModel& model, const PlanarPose& pose) {
-    if (goal.any_of.empty()) {
-        return goal;
-    }
+    const std::span<const Goal> all = alternatives(goal);
     const auto share = [&](const Goal& each) {
         return tolerance_of(each).used_share(goal_deviation(each, model, pose));
     };
-    return *std::min_element(goal.any_of.begin(), goal.any_of.end(),
-                             [&](const Goal& a, const Goal& b) { return share(a) < share(b); });
+    return *std::min_element(all.begin(), all.end(), [&](const Goal& a, const Goal& b) { return share(a) < share(b); });
 }
 
 double motion_within_goal_m(const Goal& goal, const PlantModel& model, const PlanarPose& pose, double body_reach_m) {

@@ -40,23 +40,28 @@ using GoalKind = std::variant<ConfigurationGoal, EndEffectorGoal, ContactGoal>;
 
 /// Where the flight must end and stay. A default Goal leaves every coordinate free, which is an error.
 struct Goal {
-    GoalKind kind;      ///< Unused if there are alternatives, unless it is a contact.
+    GoalKind kind;      ///< Unused if there are alternatives.
     double hold_s = 5;  ///< How long the last reference point is held, >= 1.
-    /// Alternatives: the vehicle must reach one of them and hold it as long as that one says; not nested. Those of a
-    /// contact are the places from which the robot can touch, which with_touches() finds.
+    /// Alternatives: the vehicle must reach one of them and hold it as long as that one says; not nested.
     std::vector<Goal> any_of;
-    std::optional<Touch> touch;  ///< Follows the hover, where an alternative belongs to a contact.
+    std::optional<Touch> touch;  ///< Follows the hover, at a place of a contact.
+    /// What stands for a goal that asks for contact, or has an alternative that does: its alternatives, and for each
+    /// contact the places from which the robot can touch. with_touches() finds them.
+    std::vector<Goal> places;
 };
 
-/// Whether a goal asks the robot to touch a surface.
+/// Whether a goal without alternatives asks the robot to touch a surface.
 [[nodiscard]] inline bool asks_for_contact(const Goal& goal) noexcept {
-    return std::holds_alternative<ContactGoal>(goal.kind);
+    return goal.any_of.empty() && std::holds_alternative<ContactGoal>(goal.kind);
 }
+
+/// Whether a goal or one of its alternatives does.
+[[nodiscard]] DOWNWASH_EXPORT bool may_touch(const Goal& goal) noexcept;
 
 /// The touch that follows when a reference ends at a point; nullptr where none does.
 [[nodiscard]] DOWNWASH_EXPORT const Touch* touch_at(const Goal& goal, const PlantModel& model, const PlanarPose& level);
 
-/// The alternatives of a goal: the goal itself if it names none.
+/// The alternatives of a goal, contacts by their places as far as these were found: the goal itself if it has none.
 [[nodiscard]] DOWNWASH_EXPORT std::span<const Goal> alternatives(const Goal& goal) noexcept;
 
 /// How far a vehicle is from a goal, coordinate by coordinate; 0 where the goal leaves it free.
@@ -118,10 +123,12 @@ struct GoalDrawing {
 /// How pictures show a goal without alternatives.
 [[nodiscard]] DOWNWASH_EXPORT GoalDrawing drawing_of(const Goal& goal);
 
-/// Moves a goal and its alternatives upwards, to the millimetre. What is free in z and contacts stay.
+/// Moves a goal and its alternatives upwards, to the millimetre. What is free in z and contacts stay; places are to be
+/// found anew.
 DOWNWASH_EXPORT void raise_goal(Goal& goal, double by_m);
 
-/// Multiplies the tolerances of place of a goal and its alternatives. Those of contacts stay.
+/// Multiplies the tolerances of place of a goal and its alternatives. Those of contacts stay; places are to be found
+/// anew.
 DOWNWASH_EXPORT void widen_goal(Goal& goal, double factor);
 
 /// How far a vehicle is from a goal.

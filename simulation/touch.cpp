@@ -18,6 +18,7 @@ TouchFlight fly_touch(const FlightModel& model, const AeroMap* map, const Touch&
     const auto after = [&](const FlightState&, const ReferencePoint&, const controllers::Actuation<double>&,
                            const FlightState& next, const ReferencePoint& reference,
                            const dynamics::ContactTickRecord& contact) {
+        ++flight.ticks;
         if (!is_stable(next, reference)) {
             return Rejection::unstable;
         }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "downwash/aeromap/aero_map.hpp"
 #include "downwash/base/export.hpp"
 #include "downwash/controllers/reference_point.hpp"
@@ -12,6 +14,7 @@ namespace downwash {
 struct TouchFlight {
     Rejection rejection = Rejection::none;  ///< `goal_missed` also where the force was not held
     TouchRecord record;
+    std::int64_t ticks = 0;  ///< that it took, or until it ended early
 };
 
 /// Flies a touch in a world, from a hover in front of the surface to the same hover: the robot approaches, touches,

@@ -22,13 +22,32 @@ namespace {
 /// The error of a visit beside what the goal allows, where that is one number.
 std::string error_text(const Goal& goal, const GoalVisit& visit) {
     std::string error = "error " + millimetres(visit.error_m);
-    if (!goal.any_of.empty()) {
+    if (!goal.any_of.empty() || asks_for_contact(goal)) {
         return error;
     }
     const GoalTolerance tolerance = tolerance_of(goal);
     return error + (tolerance.is_disc
                         ? fmt::format(", allowed {:g} m", tolerance.x_m)
                         : fmt::format(", allowed {:g} m in x, {:g} m in z", tolerance.x_m, tolerance.z_m));
+}
+
+/// A row for each touch.
+std::string touch_rows(const std::optional<VisitOrder>& order, const Execution& flight) {
+    std::string text;
+    for (std::size_t i = 0; i < flight.goals.size(); ++i) {
+        if (!flight.goals[i].touch) {
+            continue;
+        }
+        const TouchRecord& touch = *flight.goals[i].touch;
+        const std::string name = flight.goals.size() > 1 ? goal_name(order, i + 1) + ": " : "";
+        text += table_row(
+            text.empty() ? "contact" : "",
+            name + (touch.touched_s > 0
+                        ? fmt::format("{:.2f} N, off by {:.2f} N at most, {:.0f} W; from {:.2f} to {:.2f} s",
+                                      touch.force_n, touch.force_error_n, touch.power_w, touch.touched_s, touch.left_s)
+                        : "none: the surface was not found"));
+    }
+    return text;
 }
 
 /// Where a plan takes over from another one, and how the two join.
@@ -48,15 +67,7 @@ std::string flight_rows(const std::vector<Goal>& goals, const Solution& solution
                                                       millimetres(std::abs(flight.lateral_m)),
                                                       flight.lateral_m > 0 ? "left" : "right"));
     }
-    if (flight.touch) {
-        const TouchRecord& touch = *flight.touch;
-        text += table_row(
-            "contact",
-            touch.touched_s > 0
-                ? fmt::format("{:.2f} N, off by {:.2f} N at most, {:.0f} W; from {:.2f} to {:.2f} s", touch.force_n,
-                              touch.force_error_n, touch.power_w, touch.touched_s, touch.left_s)
-                : "none: the surface was not found");
-    }
+    text += touch_rows(solution.order, flight);
     if (flight.goals.size() > 1 || (solution.order && !solution.order->left_out.empty())) {
         std::vector<bool> met;
         for (const GoalVisit& visit : flight.goals) {

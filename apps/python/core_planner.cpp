@@ -79,8 +79,8 @@ constexpr const char* changes_to = "changes to one goal: expected ";
 
 /// The one goal in the values of a problem. @throws InputError
 Goal goal_of(const Problem& values) {
-    if (!values.goals_before.empty() || !values.targets.empty() || asks_for_contact(values.goal)) {
-        throw_input_error(std::string(changes_to) + "end_effector, configuration or any_of", "goal");
+    if (!values.goals_before.empty() || !values.targets.empty()) {
+        throw_input_error(std::string(changes_to) + "end_effector, configuration, contact or any_of", "goal");
     }
     return values.goal;
 }

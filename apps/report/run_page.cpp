@@ -1,5 +1,6 @@
 #include "downwash/report/run_page.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -11,6 +12,7 @@
 #include "downwash/report/page_flight.hpp"
 #include "downwash/report/page_scene.hpp"
 #include "downwash/report/page_template.hpp"
+#include "downwash/simulation/execution.hpp"
 #include "downwash/simulation/pose.hpp"
 
 namespace downwash {
@@ -81,13 +83,27 @@ RepeatedBy repeated_by(const Problem& problem, const Json& solution) {
     return repeated;
 }
 
-/// The problem with the one place, of all from which a surface could be touched, that the plan chose; other goals as
-/// they are.
-Problem with_chosen_place(const RunRecord& run, const FlightModel& model) {
+/// A goal of a problem, by its number on the way of a plan.
+Goal& goal_on_way(Problem& problem, const std::optional<VisitOrder>& order, std::size_t number) {
+    if (!problem.targets.empty()) {
+        const Visit& visit = order->visits[number];
+        Goal& target = problem.targets[visit.target];
+        return visit.alternative ? target.any_of[*visit.alternative] : target;
+    }
+    return number < problem.goals_before.size() ? problem.goals_before[number] : problem.goal;
+}
+
+/// The problem with those places, of all from which surfaces could be touched, that the plan chose; other goals as they
+/// are.
+Problem with_chosen_places(const RunRecord& run, const FlightModel& model) {
     Problem problem = run.problem;
-    if (asks_for_contact(problem.goal) && run.plan) {
-        const PlanarPose end = level_at(configuration_of(run.plan->reference.back().point));
-        problem.goal = Goal(nearest_goal(problem.goal, model.tick().plant, end));
+    const std::vector<Goal> goals = goals_of(in_order(problem, run.order));
+    if (!run.plan || (!problem.targets.empty() && !run.order) || std::ranges::none_of(goals, may_touch)) {
+        return problem;
+    }
+    for (const PlannedTouch& touch : touches_of(model, run.plan->reference, goals)) {
+        const PlanarPose at = level_at(configuration_of(touch.base));
+        goal_on_way(problem, run.order, touch.goal) = nearest_goal(goals[touch.goal], model.tick().plant, at);
     }
     return problem;
 }
@@ -111,7 +127,7 @@ std::string run_page_data(const RunRecord& run, const FlightModel& model, int th
               {"effective_yaml", run.problem_text},
               {"flight", flight_json(run.flight)},
               {"tree", tree_json(run.tree, problem.axes())}};
-    add_problem(page, with_chosen_place(run, model), run.order, model, threads);
+    add_problem(page, with_chosen_places(run, model), run.order, model, threads);
     return page_data(page);
 }
 

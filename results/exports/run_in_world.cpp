@@ -97,8 +97,8 @@ class Columns {
     std::vector<const std::vector<double>*> columns_;
 };
 
-bool has_touch(const SpaceGoal& goal) {
-    return std::holds_alternative<SpaceContactGoal>(goal.kind) || std::ranges::any_of(goal.any_of, has_touch);
+bool asks_for_touch(const SpaceGoal& goal) {
+    return std::holds_alternative<SpaceContactGoal>(goal.kind) || std::ranges::any_of(goal.any_of, asks_for_touch);
 }
 
 SpacePose pose_of(const SpaceMotion& motion) {
@@ -132,7 +132,7 @@ RunInWorld in_world(const RunRecord& run) {
     RunInWorld seen =
         begun(run, [&plane](double t_s, const ReferencePoint& point) { return setpoint_of(t_s, point, plane); });
     seen.rotors = problem.robot.rotors.positions_m.size();
-    seen.has_touch = asks_for_contact(problem.goal);
+    seen.has_touch = std::ranges::any_of(goals_of(problem), may_touch);
     seen.joints = {{"arm_joint", planar_axes[plane::arm]}};
     const Start& start = problem.start;
     seen.start = planar_pose(plane, start.at[plane::x], start.at[plane::z], start.pitch_rad, start.at[plane::arm]);
@@ -152,7 +152,7 @@ RunInWorld in_world(const SpaceRunRecord& run) {
         begun(run, [joints](double t_s, const SpacePoint& point) { return setpoint_of(t_s, point, joints); });
     seen.rotors = problem.robot.plant.rotors.size();
     seen.turns = true;
-    seen.has_touch = std::ranges::any_of(problem.goals, has_touch);
+    seen.has_touch = std::ranges::any_of(problem.goals, asks_for_touch);
     seen.start = pose_of(start_motion(problem.start));
     Columns columns(run.flight, {"x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"});
     const std::size_t first_joint = columns.count();

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "../support/same_bytes.hpp"
 #include "../support/test_files.hpp"
@@ -223,6 +224,27 @@ TEST_CASE("The cost of the flight is written, not that of the plan") {
     const std::string flight = text.substr(text.find("\"execution\""));
     CHECK_THAT(flight, Contains("\"energy_j\": 1234.5,") && Contains("\"cost\": 2345.25,"));
     CHECK_THAT(text.substr(0, text.size() - flight.size()), Contains("\"cost\": 142.857142857142"));
+}
+
+TEST_CASE("A touch is written with its goal, and that of the only goal beside the figures of the flight, too") {
+    Solution solution = sample();
+    solution.execution.emplace();
+    TouchRecord touch;
+    touch.is_met = true;
+    touch.force_n = 4.75;
+    const auto execution_with = [&](std::vector<GoalVisit> goals) {
+        solution.execution->goals = std::move(goals);
+        const std::string text = solution_json(solution, {"open_air", "open_air.yaml", ""});
+        return nlohmann::json::parse(text).at("execution");
+    };
+    const nlohmann::json several = execution_with({{true, 0.01, {}}, {true, 0.02, touch}});
+    CHECK_FALSE(several.contains("contact"));
+    CHECK_FALSE(several.at("goals").at(0).contains("contact"));
+    CHECK(several.at("goals").at(0).at("error_m") == 0.01);
+    CHECK(several.at("goals").at(1).at("contact").at("force_n") == 4.75);
+    const nlohmann::json only = execution_with({{true, 0.02, touch}});
+    CHECK(only.at("contact") == only.at("goals").at(0).at("contact"));
+    CHECK(only.at("contact").at("met") == true);
 }
 
 TEST_CASE("What is not finite is written as null, and so are cost and flight without a plan") {

@@ -224,9 +224,9 @@ TEST_CASE("The end of an arm presses on a wall in space as in the plane") {
     contact.z_m = 2;
     problem.goal.hold_s = 4;
     problem = with_touches(problem);
-    REQUIRE(problem.goal.any_of.size() == 1);
+    REQUIRE(problem.goal.places.size() == 1);
     const auto model = make_flight_model(problem);
-    const Configuration at = placed_at(problem.goal.any_of[0], model->tick().plant, {0, 0, 0}, 0, 0);
+    const Configuration at = placed_at(problem.goal.places[0], model->tick().plant, {0, 0, 0}, 0, 0);
     const std::vector<ReferenceKnot> knots{{0, at_rest(at)}};
     const Execution planar = execute(*model, model->state_at(level_at(at)), knots, std::span(&problem.goal, 1), false);
 
@@ -249,13 +249,13 @@ TEST_CASE("The end of an arm presses on a wall in space as in the plane") {
 
     CHECK(planar.outcome == Outcome::ok);
     CHECK(flight.outcome == Outcome::ok);
-    REQUIRE(planar.touch);
+    REQUIRE(planar.goals[0].touch);
     REQUIRE(flight.goals[0].touch);
     const SpaceTouchRecord& touch = *flight.goals[0].touch;
-    CHECK(touch.touched_s == planar.touch->touched_s);
-    CHECK(touch.force_n == Approx(planar.touch->force_n).epsilon(1e-3));
+    CHECK(touch.touched_s == planar.goals[0].touch->touched_s);
+    CHECK(touch.force_n == Approx(planar.goals[0].touch->force_n).epsilon(1e-3));
     CHECK(touch.force_n == Approx(5).epsilon(0.05));
-    CHECK(touch.power_w == Approx(planar.touch->power_w).epsilon(1e-3));
+    CHECK(touch.power_w == Approx(planar.goals[0].touch->power_w).epsilon(1e-3));
     double before_m = 0, in_all_m = 0;  // apart, before the touch and in all
     for (std::size_t i = 0; i < std::min(flight.rows.size(), planar.rows.size()); ++i) {
         const Vector3& place_m = flight.rows[i].motion.position_m;

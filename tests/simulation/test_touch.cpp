@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "../support/test_problem.hpp"
+#include "downwash/controllers/plan.hpp"
 #include "downwash/problems/problem_model.hpp"
 #include "downwash/problems/touch_places.hpp"
 #include "downwash/simulation/execution.hpp"
@@ -38,13 +39,13 @@ Problem touching_problem(TouchingPart part, double force_n) {
     problem.goal.hold_s = 4;
     problem.aero.min_distance_radii = 0.05;
     problem = with_touches(problem);
-    REQUIRE(problem.goal.any_of.size() == 1);
+    REQUIRE(problem.goal.places.size() == 1);
     return problem;
 }
 
 Execution touch_from_hover(const Problem& problem, const FlightWorld& in = {}, bool aero = true) {
     const auto model = make_flight_model(problem);
-    const Goal& place = problem.goal.any_of.front();
+    const Goal& place = problem.goal.places.front();
     Configuration at{0, 0, quarter_turn};
     if (part_of(place) == GoalPart::end_effector) {
         at[plane::arm] = *test::end_effector(place).direction_rad;
@@ -62,11 +63,11 @@ TEST_CASE("a vehicle presses on a ceiling and on a wall with the force that is a
     CAPTURE(static_cast<int>(part), force_n);
     const Execution flight = touch_from_hover(touching_problem(part, force_n));
     CHECK(flight.outcome == Outcome::ok);
-    REQUIRE(flight.touch);
-    CHECK(flight.touch->is_met);
-    CHECK(flight.touch->force_n == Approx(force_n).epsilon(0.05));
-    CHECK(flight.touch->max_depth_m < max_touch_depth_m);
-    CHECK(flight.touch->left_s - flight.touch->touched_s > 5 / (0.4 * std::sqrt(12.0)) + 4);
+    REQUIRE(flight.goals[0].touch);
+    CHECK(flight.goals[0].touch->is_met);
+    CHECK(flight.goals[0].touch->force_n == Approx(force_n).epsilon(0.05));
+    CHECK(flight.goals[0].touch->max_depth_m < max_touch_depth_m);
+    CHECK(flight.goals[0].touch->left_s - flight.goals[0].touch->touched_s > 5 / (0.4 * std::sqrt(12.0)) + 4);
     CHECK(flight.min_clearance_m > 0.1);  // the touch does not count
     CHECK(flight.rows.back().contact_force_n == 0);
 }
@@ -82,19 +83,19 @@ TEST_CASE("an observer does not take a surface that is touched for a disturbance
     noisy.velocity_noise_m_s = is_in_noise ? 0.01 : 0;
     const FlownWorld world = make_world(problem.robot, noisy);
     const Execution flight = touch_from_hover(problem, {&world});
-    REQUIRE(flight.touch);
-    CHECK(flight.touch->is_met);
-    CHECK(flight.touch->force_n == Approx(5).epsilon(0.05));
+    REQUIRE(flight.goals[0].touch);
+    CHECK(flight.goals[0].touch->is_met);
+    CHECK(flight.goals[0].touch->force_n == Approx(5).epsilon(0.05));
     CHECK(flight.outcome == Outcome::ok);
 }
 
 TEST_CASE("the thrust under a ceiling that is touched carries the weight and the force, with its K") {
     const Execution flight = touch_from_hover(touching_problem(TouchingPart::frame, 5));
-    REQUIRE(flight.touch);
+    REQUIRE(flight.goals[0].touch);
     const double weight_n = (4.5 + 0.45) * standard_gravity_m_s2;
     int held = 0;
     for (const FlightRow& row : flight.rows) {
-        if (row.t_s > flight.touch->left_s - 4 && row.t_s < flight.touch->left_s - 1) {
+        if (row.t_s > flight.goals[0].touch->left_s - 4 && row.t_s < flight.goals[0].touch->left_s - 1) {
             CHECK(row.thrust_n == Approx(weight_n + row.contact_force_n).epsilon(0.01));
             CHECK(row.thrust_command_n < 0.9 * weight_n);
             ++held;
@@ -115,18 +116,18 @@ TEST_CASE("a surface that is not where it is believed to be is found by touch, u
         CAPTURE(scene_x_m);
         const Execution flight = touched(scene_x_m);
         CHECK(flight.outcome == Outcome::ok);
-        CHECK(flight.touch->force_n == Approx(5).epsilon(0.05));
+        CHECK(flight.goals[0].touch->force_n == Approx(5).epsilon(0.05));
     }
     const Execution missed = touched(0.8);
     CHECK(missed.outcome == Outcome::goal_missed);
-    CHECK_FALSE(missed.touch->is_met);
-    CHECK(missed.touch->touched_s == 0);
+    CHECK_FALSE(missed.goals[0].touch->is_met);
+    CHECK(missed.goals[0].touch->touched_s == 0);
 }
 
 TEST_CASE("a touch that is too fast, or not with the part that is meant to, is a collision") {
     Problem problem = touching_problem(TouchingPart::end_effector, 5);
-    problem.goal.any_of.front().touch->speed_m_s = 0.8;
-    problem.goal.any_of.front().touch->standoff_m = 0.3;
+    problem.goal.places.front().touch->speed_m_s = 0.8;
+    problem.goal.places.front().touch->standoff_m = 0.3;
     CHECK(touch_from_hover(problem).outcome == Outcome::collision);
 
     problem = touching_problem(TouchingPart::frame, 5);
@@ -140,7 +141,7 @@ TEST_CASE("a touch through the map of a planner ends as the one with effects eva
         const Problem problem = touching_problem(part, 5);
         const auto model = make_flight_model(problem);
         const auto map = model->make_map(problem.bounds);
-        const Goal& place = problem.goal.any_of.front();
+        const Goal& place = problem.goal.places.front();
         Configuration at{
             0, 0, part_of(place) == GoalPart::end_effector ? *test::end_effector(place).direction_rad : quarter_turn};
         at = placed_at(place, model->tick().plant, at, 0, 0);
@@ -151,8 +152,75 @@ TEST_CASE("a touch through the map of a planner ends as the one with effects eva
         static_cast<void>(fly(*model, map.get(), rules_of_execution(), hover, state));
         const TouchFlight flight = fly_touch(*model, map.get(), *place.touch, at_rest(at), state, {nullptr, 200});
         CHECK(flight.rejection == Rejection::none);
-        CHECK(flight.record.force_n == Approx(direct.touch->force_n).epsilon(0.01));
-        CHECK(flight.record.touched_s == Approx(direct.touch->touched_s).margin(0.05));
-        CHECK(flight.record.power_w == Approx(direct.touch->power_w).epsilon(0.02));
+        CHECK(flight.record.force_n == Approx(direct.goals[0].touch->force_n).epsilon(0.01));
+        CHECK(flight.record.touched_s == Approx(direct.goals[0].touch->touched_s).margin(0.05));
+        CHECK(flight.record.power_w == Approx(direct.goals[0].touch->power_w).epsilon(0.02));
     }
+}
+
+TEST_CASE("hover, touch, hover and touch are one flight, which goes on as long as touches take") {
+    const Problem problem = touching_problem(TouchingPart::frame, 5);
+    const auto model = make_flight_model(problem);
+    const PlantModel& plant = model->tick().plant;
+    const Goal under_ceiling = problem.goal;
+    const Goal before_wall = touching_problem(TouchingPart::end_effector, 5).goal;
+    const Configuration ceiling = placed_at(under_ceiling.places[0], plant, {0, 0, quarter_turn}, 0, 0);
+    const Configuration wall = placed_at(before_wall.places[0], plant, {0, 0, 0}, 0, 0);
+    const Configuration middle{0, 2, quarter_turn};
+    std::vector<Goal> goals{configuration_goal(0, 2), under_ceiling, configuration_goal(0, 2), before_wall};
+    goals[0].hold_s = goals[2].hold_s = 1;
+    const auto hovering = [](std::int64_t from, std::int64_t to, const Configuration& at) {
+        return std::vector<ReferenceKnot>{{from, at_rest(at)}, {to, at_rest(at)}};
+    };
+    std::vector<ReferenceKnot> knots = hovering(0, 100, middle);
+    for (const auto& more : {hovering(1100, 1300, ceiling), hovering(2300, 2400, middle)}) {
+        knots.insert(knots.end(), more.begin(), more.end());
+    }
+    knots.push_back({3400, at_rest(wall)});
+    const std::vector<PlannedTouch> planned = touches_of(*model, knots, goals);
+    REQUIRE(planned.size() == 2);
+    CHECK(planned[0].tick == 1300);
+    CHECK(planned[0].goal == 1);
+    CHECK(planned[1].tick == 3400 + 200);  // after the hover in front of the wall
+    CHECK(planned[1].goal == 3);
+
+    const FlightState start = model->state_at(level_at(middle));
+    const Execution flight = execute(*model, start, knots, goals, true);
+    CHECK(flight.outcome == Outcome::ok);
+    REQUIRE(flight.goals.size() == 4);
+    for (const GoalVisit& visit : flight.goals) {
+        CHECK(visit.is_met);
+    }
+    REQUIRE(flight.goals[1].touch);
+    REQUIRE(flight.goals[3].touch);
+    CHECK_FALSE(flight.goals[0].touch);
+    CHECK_FALSE(flight.goals[2].touch);
+    CHECK(flight.goals[1].touch->touched_s > 13);
+    CHECK(flight.goals[3].touch->touched_s > flight.goals[1].touch->left_s + 10 + 1 + 10);
+    // It waits for the first touch: one that touches alone is through with it after as long a time.
+    const Execution alone =
+        execute(*model, start, {knots.begin(), knots.begin() + 3}, std::span(goals).subspan(1, 1), true);
+    CHECK(alone.goals[0].touch->touched_s == flight.goals[1].touch->touched_s);
+    CHECK(flight.duration_s - (alone.duration_s - 13) > 36);
+    const FlightRow& back = flight.rows[static_cast<std::size_t>(std::llround(alone.duration_s / 0.01))];
+    CHECK(back.q[1] == alone.rows.back().q[1]);
+    CHECK(back.reference == alone.rows.back().reference);
+    // A part of it is the same flight.
+    const std::vector<ReferenceSegment> segments = Plan{knots, 0.01}.segments();
+    const FlightPart part = execute_part(*model, start, segments, true, {}, {}, std::span(planned).first(1));
+    CHECK(part.rejection == Rejection::none);
+    const auto end = static_cast<std::size_t>(3400 + std::llround(alone.duration_s / 0.01) - 1300);
+    CHECK(part.end.plant.q[0] == flight.rows[end].q[0]);
+    CHECK(part.end.plant.energy_j == flight.rows[end].energy_j);
+
+    // A touch that is not met ends the flight there.
+    std::vector<Goal> hard = goals;
+    hard[1].places[0].touch->force_tolerance_n = 1e-9;
+    const Execution missed = execute(*model, start, knots, hard, true);
+    CHECK(missed.outcome == Outcome::goal_missed);
+    CHECK(missed.goals[0].is_met);
+    CHECK_FALSE(missed.goals[1].is_met);
+    CHECK_FALSE(missed.goals[2].is_met);
+    CHECK_FALSE(missed.goals[3].touch);
+    CHECK(missed.duration_s == Approx(alone.duration_s));
 }
