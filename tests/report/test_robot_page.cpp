@@ -97,6 +97,7 @@ TEST_CASE("the data of a robot's page has what the page draws, with the robot's 
     CHECK(planar.at("robot").at("rotors")[0].at("spin") == 0);
     CHECK(planar.at("robot").at("multirotor").contains("pitch_inertia_kg_m2"));
     if (has_pages()) {
-        CHECK_THAT(robot_page(shown, "hexa.yaml"), Contains("downwash/robot-report/v1") && !Contains("{\"downwash\":\"nothing\"}"));
+        CHECK_THAT(robot_page(shown, "hexa.yaml"),
+                   Contains("downwash/robot-report/v1") && !Contains("{\"downwash\":\"nothing\"}"));
     }
 }

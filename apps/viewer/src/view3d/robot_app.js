@@ -13,17 +13,25 @@ import {draw_space_robot} from "./space_robot.js";
 const vector = (list) => new three.Vector3(...list);
 const axes = [0, 1, 2];
 
-/** The ends of rotor discs and of all that the end effector gets to: what has to be in the picture. */
-function outermost_points({robot, facts, joints, report}) {
+/** The greatest thrust in a hover is as long as this share of the vehicle's width. */
+const thrust_share = 0.8;
+
+/** The ends of rotor discs, thrusts and all that the end effector gets to: what has to be in the picture. */
+function outermost_points({robot, facts, joints, report}, width_m) {
     const {rotors, rotor_radius_m: radius_m} = robot;
-    const ways = axes.filter((k) => k !== 1 || !report.is_planar);
-    const reached = joints > 0 ?
-        ways.flatMap((k) => [-1, 1].map((sign) => axes.map((i) => i === k ? sign * facts.reach_m : 0))) :
-        [];
-    const discs = rotors.flatMap(
-        ({position_m: [x, y, z]}) =>
-            [[x - radius_m, y, z], [x + radius_m, y, z], [x, y - radius_m, z], [x, y + radius_m, z]]);
-    return [...reached, ...discs, [0, 0, -0.7 * radius_m]];
+    // The directions to the neighbours of a cube.
+    const steps = [-1, 0, 1], ways = steps.flatMap((x) => steps.flatMap((y) => steps.map((z) => [x, y, z])));
+    const reached = ways.filter(([x, y, z]) => joints > 0 && (x || y || z) && (y === 0 || !report.is_planar))
+                        .map((way) => way.map((value) => (value * facts.reach_m) / Math.hypot(...way)));
+    const discs = rotors.flatMap(({position_m, axis}) => {
+        const [x, y, z] = position_m, outward = 1 + radius_m / Math.hypot(x, y, 1e-9);
+        const thrust_m = (thrust_share * width_m) / Math.hypot(...axis);
+        return [
+            [x - radius_m, y, z], [x + radius_m, y, z], [x, y - radius_m, z], [x, y + radius_m, z],
+            [outward * x, outward * y, z], position_m.map((place, k) => place + thrust_m * axis[k])
+        ];
+    });
+    return [...reached, ...discs, [0, 0, -0.4 * width_m]];
 }
 
 /** Balls of a size on the screen would hide small robots: as large as a part of the robot. */
@@ -79,7 +87,8 @@ export function start(stage, model, pose) {
     const renderer = new three.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
     const canvas = make_canvas(renderer);
     canvas.setAttribute("aria-label", "The robot in three dimensions; its numbers stand in the tables of this page.");
-    const points = outermost_points(model);
+    const width_m = Math.max(robot.rotor_radius_m, ...robot.rotors.map(({position_m}) => Math.hypot(...position_m)));
+    const points = outermost_points(model, width_m);
     const opening = {
         low: axes.map((k) => Math.min(...points.map((point) => point[k]))),
         high: axes.map((k) => Math.max(...points.map((point) => point[k])))
@@ -91,8 +100,7 @@ export function start(stage, model, pose) {
     world.add(...lights(), draw_floor(floor, paint));
     const layers = {masses: new three.Group(), spins: new three.Group(), reach: new three.Group()};
     const hover_n = Math.max(...pose.state.thrusts_n);
-    const width_m = Math.max(robot.rotor_radius_m, ...robot.rotors.map(({position_m}) => Math.hypot(...position_m)));
-    const vehicle = draw_space_robot(robot, paint, {meters_per_n: (0.8 * width_m) / hover_n});
+    const vehicle = draw_space_robot(robot, paint, {meters_per_n: (thrust_share * width_m) / hover_n});
     world.add(vehicle.body);
     const own = draw_mass(0.035 * width_m, "vehicle", paint), whole = draw_mass(0.06 * width_m, "goal", paint, 0.85);
     const of_links = robot.links.map(() => draw_mass(0.035 * width_m, "goal", paint));
