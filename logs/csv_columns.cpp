@@ -188,6 +188,7 @@ namespace downwash {
 
 std::vector<std::string> csv_signal_names() {
     std::vector<std::string> names;
+    names.reserve(logs::signals.size() + logs::numbered_signals.size() * logs::max_numbered);
     for (const logs::Signal& signal : logs::signals) {
         names.emplace_back(signal.name);
     }

@@ -29,7 +29,7 @@ class CsvColumns {
                const std::string& file);
 
     /// The column of a signal; empty if there is none.
-    [[nodiscard]] std::optional<SignalColumn> find(std::string_view signal) const;
+    [[nodiscard]] std::optional<SignalColumn> find(std::string_view name) const;
     /// The columns of numbered signals, rotor_1, rotor_2... until one is missing.
     [[nodiscard]] std::vector<SignalColumn> find_numbered(std::string_view beginning) const;
     /// The axes that the names show; empty if they show none.

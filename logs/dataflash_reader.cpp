@@ -23,8 +23,8 @@ struct Source {
     std::string_view message;
     LogSeries FlightLog::*series;
     std::array<std::string_view, 4> fields;
-    std::string_view instance = "";  ///< field that has to be 0, if there is one
-    bool is_angles = false;          ///< roll, pitch and yaw [deg]
+    std::string_view instance{};  ///< field that has to be 0, if there is one
+    bool is_angles = false;       ///< roll, pitch and yaw [deg]
 };
 
 /// The best one of each series comes first.

@@ -1,6 +1,7 @@
 #include "downwash/logs/log_reader.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "downwash/base/files.hpp"
 #include "downwash/base/key_error.hpp"
@@ -35,8 +36,10 @@ void take_missing(FlightLog& log, FlightLog&& other) {
 void check_columns(const std::vector<std::string>& names, const std::string& file, const LogOptions& options) {
     for (const auto& [signal, column] : options.columns) {
         if (std::ranges::find(names, column) == names.end()) {
-            throw_input_error(file + ": there is no column '" + excerpt(column) + "', which is said to be " + signal +
-                              "; columns are " + excerpt(joined(names, ", ")));
+            std::string message = file;
+            message.append(": there is no column '").append(excerpt(column)).append("', which is said to be ");
+            message.append(signal).append("; columns are ").append(excerpt(joined(names, ", ")));
+            throw_input_error(std::move(message));
         }
     }
 }

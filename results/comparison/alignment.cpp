@@ -217,7 +217,7 @@ LogAlignment align(const FlightLog& log, const PlannedFlight& planned, const Ali
     }
     constexpr double likely = 0.5;
     if (best.is_time_fitted && best.correlation < likely) {
-        best.remarks.push_back(
+        best.remarks.emplace_back(
             "the speeds in the log hardly resemble those of the plan: is it the log of this flight?");
     }
     if (!(best.covered >= least_covered)) {

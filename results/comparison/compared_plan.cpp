@@ -21,8 +21,8 @@ std::string name_of_obstacle(const Scene& scene, const std::optional<std::size_t
 
 class PlanarPlan final : public ComparedPlan {
  public:
-    PlanarPlan(const Problem& problem, const Plan& plan)
-        : problem_(problem), plan_(plan), model_(make_flight_model(problem)), goals_(goals_of(problem)) {}
+    PlanarPlan(const Problem& problem, Plan plan)
+        : problem_(problem), plan_(std::move(plan)), model_(make_flight_model(problem)), goals_(goals_of(problem)) {}
 
     [[nodiscard]] bool is_in_plane() const noexcept override { return true; }
     [[nodiscard]] std::size_t joints() const noexcept override { return 1; }
@@ -85,7 +85,7 @@ class PlanarPlan final : public ComparedPlan {
 
 class PlanInSpace final : public ComparedPlan {
  public:
-    PlanInSpace(const SpaceProblem& problem, const SpacePlan& plan) : model_(problem), plan_(plan) {}
+    PlanInSpace(const SpaceProblem& problem, SpacePlan plan) : model_(problem), plan_(std::move(plan)) {}
 
     [[nodiscard]] bool is_in_plane() const noexcept override { return false; }
     [[nodiscard]] std::size_t joints() const noexcept override { return static_cast<std::size_t>(plan_.joints); }
