@@ -25,7 +25,8 @@ planner/ompl_planners: base scene dynamics effects grids aeromap controllers sim
 planner:               base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners
 planner/ompl:          base scene dynamics effects grids aeromap controllers simulation problems search ompl_planners planner
 results:               base scene dynamics effects grids aeromap controllers simulation problems search planner
-results/exports:       base scene dynamics effects grids aeromap controllers simulation problems search planner results
+results/mavlink:       base
+results/exports:       base scene dynamics effects grids aeromap controllers simulation problems search planner results mavlink
 judge:                 base scene dynamics effects grids aeromap controllers simulation problems results
 apps/report:           base scene dynamics effects grids aeromap controllers simulation problems search planner results
 bench/studies:         base scene dynamics effects grids aeromap controllers simulation problems search planner results report
