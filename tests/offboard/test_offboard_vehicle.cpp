@@ -127,9 +127,9 @@ TEST_CASE("telemetry is where the vehicle is, in MAVLink's axes") {
     CHECK(mavlink::message_in<mavlink::Heartbeat>(frames[0]).value().custom_mode == mavlink::px4_hold_mode);
     const auto position = mavlink::message_in<mavlink::LocalPositionNed>(frames[2]).value();
     CHECK(position.time_boot_ms == 0);
-    CHECK(position.x == Approx(-1).margin(0.01));
-    CHECK(position.y == Approx(1.4).margin(0.01));
-    CHECK(position.z == Approx(-2).margin(0.01));
+    CHECK(position.x == Approx(0).margin(0.01));
+    CHECK(position.y == Approx(1.2).margin(0.01));
+    CHECK(position.z == Approx(-2.2).margin(0.01));
 }
 
 TEST_CASE("a vehicle whose set-points do not come holds after half a second, and stops where PX4 says") {

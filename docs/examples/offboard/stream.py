@@ -3,7 +3,7 @@
 
 Usage: stream.py PROBLEM.yaml
   --lower OBSTACLE METRES   it turns out lower in flight: the streamer plans again
-  --iterations N            of each search, which makes a mission repeatable; default: 60 s before a flight, 0.4 s in flight
+  --iterations N            of each search, which makes a mission repeatable; default: 60 s before a flight, 1.2 s in flight
   --instance N              adds N to both ports: 14540, on which it listens, and 14580, to which it sends
   --stop-after S            stops sending that long after offboard mode began, as if it had crashed
 Exit codes: 0 the vehicle hovers at the goal, 1 it does not, 2 bad input, 3 no vehicle answers.
@@ -33,9 +33,9 @@ MAX_ACCELERATION_M_S2 = 3.0  # MPC_ACC_HOR
 STOP_DELAY_S = 0.6  # until PX4 brakes in Hold, as it reckons
 
 SIGHT_M = 1.5  # at which the obstacle is seen, from the multirotor's centre of mass
-LEAD_S = 1.0  # from what is seen to the first tick of the new plan
-PLANNING_SHARE = 0.4  # of the lead, for the search; then its flights in silence are flown
-BETWEEN_MOMENTS_S = 0.25  # of a plan at which it is looked at
+LEAD_S = 3.0  # from what is seen to the first tick of the new plan
+PLANNING_SHARE = 0.4  # of the lead, for the search; then the plan is looked at
+BETWEEN_MOMENTS_S = 0.5  # of a plan at which it is looked at
 MAX_ERROR_M = 0.04  # of PX4's loops along a plan
 MIN_CLEARANCE_M = 0.1  # of what is flown in silence
 MIN_SPEED_M_S = 0.1

@@ -13,12 +13,12 @@ using namespace downwash;
 
 namespace {
 
-constexpr double sight_m = 1.5;             ///< at which the obstacle is seen, from the multirotor's centre of mass
-constexpr double lead_s = 1;                ///< from what is seen to the first tick of the new plan
-constexpr double planning_share = 0.4;      ///< of the lead, for the search; then its flights in silence are flown
-constexpr double between_moments_s = 0.25;  ///< of a plan at which it is looked at
-constexpr double max_error_m = 0.04;        ///< of PX4's loops along a plan
-constexpr double min_clearance_m = 0.1;     ///< of what is flown in silence
+constexpr double sight_m = 1.5;            ///< at which the obstacle is seen, from the multirotor's centre of mass
+constexpr double lead_s = 3;               ///< from what is seen to the first tick of the new plan
+constexpr double planning_share = 0.4;     ///< of the lead, for the search; then the plan is looked at
+constexpr double between_moments_s = 0.5;  ///< of a plan at which it is looked at
+constexpr double max_error_m = 0.04;       ///< of PX4's loops along a plan
+constexpr double min_clearance_m = 0.1;    ///< of what is flown in silence
 constexpr double min_speed_m_s = 0.1;
 constexpr double request_period_s = 0.5, heartbeat_period_s = 1;
 
