@@ -124,7 +124,6 @@ class Streamer:
         self._limits_deg = [link.get("limits_deg") for link in drawing["robot.arm.links"]] if drawing.joints else []
         self._pool = concurrent.futures.ThreadPoolExecutor(1)
         self._replan: concurrent.futures.Future[downwash.Answer] | None = None
-        self._objection: str | None = None  # to the new plan
         self._phase = "offering"  # then flying, stopping and over
         self.has_arrived = False
         self.flown_s = 0.0  # since offboard mode began
@@ -277,23 +276,20 @@ class Streamer:
             self._replan = self._pool.submit(self._make_new_plan)
 
     def _make_new_plan(self) -> downwash.Answer:
-        """What to fly from the next plan's tick on. If there is an objection to a plan, the stop."""
-        stops: list[downwash.Answer] = []
-
-        def keep_stop(answer: downwash.Answer) -> None:
-            if answer.advice not in ("keep", "follow"):
-                stops.append(answer)
-
+        """What to fly from the next plan's tick on: the best answer to which there is no objection. A stop is always one."""
+        answers: list[downwash.Answer] = []  # each better than the one before; the first is a stop
         tick = self._new_plan_from
         start = self._planner.predicted(self._start, self._plan, tick)
         limit: dict[str, Any] = {"time_limit_s": PLANNING_SHARE * LEAD_S}
         if self._iterations is not None:
             limit = {"max_iterations": self._iterations}
-        answer = self._planner.replan(start, tick, put=[self._lower], on_answer=keep_stop, **limit)
-        whole = joined(self._plan, tick, answer.plan, self._planner.tick_s)
-        if answer.advice in ("keep", "follow"):
-            self._objection = self._objection_to(whole, tick)
-        return answer if self._objection is None else stops[-1]
+        self._planner.replan(start, tick, put=[self._lower], on_answer=answers.append, **limit)
+        while answers[-1].advice in ("keep", "follow") and len(answers) > 1:
+            whole = joined(self._plan, tick, answers[-1].plan, self._planner.tick_s)
+            if self._objection_to(whole, tick) is None:
+                break
+            answers.pop()
+        return answers[-1]
 
     def _take_new_plan(self) -> None:
         if self._replan is None or self._tick < self._new_plan_from:
@@ -302,8 +298,6 @@ class Streamer:
         self._replan = None
         self._plan = joined(self._plan, self._new_plan_from, answer.plan, self._planner.tick_s)
         self._leads_to_goal = answer.advice in ("keep", "follow")
-        if self._objection is not None:
-            self._say(f"no new plan: {self._objection}")
         end = ", ".join(f"{answer.plan[name][-1]:.3f}" for name in ("x_m", "y_m", "z_m"))
         self._say(f"{answer.advice}: {answer.plan['t_s'][-1]:.2f} s to ({end}) m")
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <variant>
+#include <vector>
 
 #include <downwash/base/key_error.hpp>
 
@@ -220,7 +221,7 @@ void Streamer::look_around() {
     }
 }
 
-/// What to fly from new_plan_from_ on. If there is an objection to a plan to the goal, it is the stop.
+/// What to fly from new_plan_from_ on: the best answer to which there is no objection. A stop is always one.
 SpaceAnswer Streamer::replan() {
     SpaceSceneChange change;
     change.put = {obstacle_in(believed_, options_.lower)};
@@ -229,15 +230,15 @@ SpaceAnswer Streamer::replan() {
     if (!how.max_iterations) {
         how.time_limit_s = planning_share * lead_s;
     }
-    SpaceAnswer stop;
-    how.on_answer = [&](const SpaceAnswer& answer) { stop = leads_to_goal(answer) ? stop : answer; };
+    std::vector<SpaceAnswer> answers;  // each better than the one before; the first is a stop
+    how.on_answer = [&](const SpaceAnswer& answer) { answers.push_back(answer); };
     const std::int64_t from = new_plan_from_;
-    const SpaceAnswer answer = planner_->replan(planner_->predicted(believed_.start, plan_, from), from, change, how);
-    const SpacePlan whole = plan_.beginning(from).followed_by(answer.plan);
-    if (leads_to_goal(answer)) {
-        objection_ = objection_to(whole, from);
+    planner_->replan(planner_->predicted(believed_.start, plan_, from), from, change, how);
+    while (leads_to_goal(answers.back()) && answers.size() > 1 &&
+           objection_to(plan_.beginning(from).followed_by(answers.back().plan), from)) {
+        answers.pop_back();
     }
-    return objection_ ? stop : answer;
+    return answers.back();
 }
 
 void Streamer::take_new_plan() {
@@ -248,9 +249,6 @@ void Streamer::take_new_plan() {
     plan_ = plan_.beginning(new_plan_from_).followed_by(answer.plan);
     new_plan_from_ = -1;
     leads_to_goal_ = leads_to_goal(answer);
-    if (objection_) {
-        say("no new plan: " + *objection_);
-    }
     const double* to = answer.plan.reference.back().point.position;
     say(text("%s: %.2f s to (%.3f, %.3f, %.3f) m", std::string(name_of(answer.advice)).c_str(),
              answer.plan.duration_s(), to[space::x], to[space::y], to[space::z]));

@@ -81,6 +81,5 @@ class Streamer {
     bool leads_to_goal_ = true;
     bool knows_ = false;  ///< that the obstacle is lower
     std::future<downwash::SpaceAnswer> answer_;
-    std::optional<std::string> objection_;  ///< to the new plan
     double max_distance_m_ = 0;
 };
