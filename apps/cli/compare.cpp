@@ -82,7 +82,7 @@ std::string problem_file(const CompareLogArguments& given) {
     }
     const std::filesystem::path beside = std::filesystem::path(plan_file(given.plan)).parent_path() / "effective.yaml";
     if (!std::filesystem::exists(beside)) {
-        throw UsageError("{} is not there: --problem says which problem the plan is of", beside.string());
+        throw UsageError("{} is not there: --problem-file says which problem the plan is of", beside.string());
     }
     return beside.string();
 }
@@ -183,8 +183,8 @@ std::string command_of(const CompareLogArguments& given) {
     const auto add = [&command](const char* name, const std::optional<std::string>& value) {
         command += value ? fmt::format(" {} {}", name, shell_word(*value)) : std::string();
     };
-    add("--problem", given.problem);
-    add("--format", given.format);
+    add("--problem-file", given.problem);
+    add("--log-format", given.format);
     add("--axes", given.axes);
     add("--time-unit", given.time_unit);
     add("--angles", given.angles);
@@ -195,7 +195,7 @@ std::string command_of(const CompareLogArguments& given) {
         command += " --topic " + shell_word(topic);
     }
     command += given.time_offset_s ? fmt::format(" --time-offset {}", *given.time_offset_s) : std::string();
-    command += given.worlds ? fmt::format(" --worlds {}", *given.worlds) : std::string();
+    command += given.worlds ? fmt::format(" --envelope-worlds {}", *given.worlds) : std::string();
     command += given.is_in_world ? " --in-world" : "";
     return command + (given.allows_truncation ? " --allow-truncated" : "");
 }
@@ -222,8 +222,8 @@ ExitCode compare_with_log(const CompareLogArguments& given) {
     how.alignment = {given.time_offset_s, given.is_in_world};
     if (given.worlds && (*given.worlds > most_worlds || (*given.worlds > 0 && !read.plan->has_uncertainty()))) {
         throw UsageError(*given.worlds > most_worlds
-                             ? fmt::format("--worlds is {}: expected at most {}", *given.worlds, most_worlds)
-                             : "--worlds needs to know what is uncertain: the problem has no `uncertainty:`");
+                             ? fmt::format("--envelope-worlds is {}: expected at most {}", *given.worlds, most_worlds)
+                             : "--envelope-worlds needs to know what is uncertain: the problem has no `uncertainty:`");
     }
     how.worlds = {read.seed, first_world(solution_text),
                   given.worlds.value_or(read.plan->has_uncertainty() ? usual_worlds : 0), given.threads,

@@ -20,10 +20,10 @@ void add_compare(Command program, Action& action, ExitCode (*run)(const CompareL
         .required()
         .offers_files({".ulg", ".bin", ".bag", ".csv"});
     command
-        .add_option("--problem FILE", given.problem,
+        .add_option("--problem-file FILE", given.problem,
                     "problem that the plan is of; default: effective.yaml beside the plan")
         .offers_files({".yaml"});
-    Option format = command.add_option("--format F", given.format, "format of the log; default: as its bytes show");
+    Option format = command.add_option("--log-format F", given.format, "format of the log; default: as its bytes show");
     format.one_of({"ulog", "dataflash", "rosbag", "csv"});
     Option axes = command.add_option("--axes A", given.axes,
                                      "axes of the log: ned (z down; body forward, right, down) or enu (z up; body "
@@ -37,7 +37,8 @@ void add_compare(Command program, Action& action, ExitCode (*run)(const CompareL
     angles.one_of({"rad", "deg"});
     command
         .add_option("--column SIGNAL=NAME", given.columns,
-                    "column of a CSV that holds a signal: t, x, y, z, vx, vy, vz, qw, qx, qy, qz, roll, pitch, yaw, "
+                    "the column of a CSV that holds a quantity; quantities: t, x, y, z, vx, vy, vz, qw, qx, qy, qz, "
+                    "roll, pitch, yaw, "
                     "joint_1, rotor_1, ...; may be repeated")
         .repeated();
     command
@@ -48,7 +49,7 @@ void add_compare(Command program, Action& action, ExitCode (*run)(const CompareL
                        "time since the log's beginning at which the plan begins; default: by correlation");
     command.add_flag("--in-world", given.is_in_world,
                      "take the log's places as those of the problem's world; default: turned about z and moved to fit");
-    command.add_option("--worlds N", given.worlds,
+    command.add_option("--envelope-worlds N", given.worlds,
                        "worlds of the problem's uncertainty that span the envelope; default 32, or 0 without an "
                        "uncertainty");
     command.add_flag("--allow-truncated", given.allows_truncation,

@@ -98,7 +98,7 @@ void add_robot_thrust(Command robot, Action& action) {
         .positive();
     command
         .add_option("--column QUANTITY=NAME", given.columns,
-                    "the column that holds a quantity, such as thrust=Schub; may be repeated")
+                    "the column of a CSV that holds a quantity; such as thrust=Schub; may be repeated")
         .repeated();
     command
         .add_option("--unit QUANTITY=UNIT", given.units, "the unit of a quantity, such as thrust=gf; may be repeated")

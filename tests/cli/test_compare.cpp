@@ -11,7 +11,7 @@ TEST_CASE("The flight of a run is its own log: no error from it, and the referen
     const Workspace work;
     work.succeed("solve", problem_file("bridge_inspection"), "--max-iterations 300 --quiet --out run");
     const auto solution = nlohmann::json::parse(work.text("run/solution.json"));
-    const auto found = work.json("compare run run/trajectory.csv --worlds 0");
+    const auto found = work.json("compare run run/trajectory.csv --envelope-worlds 0");
     CHECK(found.at("schema") == "downwash/comparison/v1");
     CHECK(found.at("log").at("format") == "CSV");
     CHECK(found.at("alignment").at("covered").get<double>() == Approx(1).margin(0.002));
@@ -39,9 +39,9 @@ TEST_CASE("The flight of a run is its own log: no error from it, and the referen
     check_rejected(work.run("compare run cut.ulg"), "cut.ulg: byte 0: the header ends after 7 bytes");
     check_rejected(work.run("compare run nowhere.ulg"), "nowhere.ulg cannot be read: there is no such file");
     check_rejected(work.run("compare run run/trajectory.csv --column z"), "--column is 'z': expected SIGNAL=NAME");
-    check_rejected(work.run("compare run run/trajectory.csv --worlds 3"), "the problem has no `uncertainty:`");
+    check_rejected(work.run("compare run run/trajectory.csv --envelope-worlds 3"), "the problem has no `uncertainty:`");
     std::filesystem::create_directory(work.in_run("alone"));
     write_file(work.in_run("alone/solution.json"), work.text("run/solution.json"));
     check_rejected(work.run("compare alone/solution.json run/trajectory.csv"),
-                   "--problem says which problem the plan is of");
+                   "--problem-file says which problem the plan is of");
 }

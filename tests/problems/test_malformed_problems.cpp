@@ -157,8 +157,9 @@ const Edit edits[] = {
     {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  return_to: {x_m: 9}\n",
      "15:20: goal.return_to.x_m is 9, outside the bounds: expected -6 to 6"},
     {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}, {contact: {obstacle: wall, force_n: 2}}]\n",
-     "14:45: goal.in_any_order[1] needs exactly one of <targets>\n14:46: unknown key 'contact' in "
-     "goal.in_any_order[1]: "
+     "14:66: goal.in_any_order[1].contact.obstacle is 'wall': expected the name of an obstacle"},
+    {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}, {force: {obstacle: wall, force_n: 2}}]\n",
+     "14:45: goal.in_any_order[1] needs exactly one of <targets>\n14:46: unknown key 'force' in goal.in_any_order[1]: "
      "expected <keys of a target>"},
     {tip_and_hold, "  in_any_order: [{configuration: {x_m: 1}}]\n  contact: {obstacle: wall, force_n: 2}\n",
      "15:3: goal has both in_any_order and contact: expected exactly one of <goals>"},
