@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Flies the simulated vehicle over UDP with the streamer and, given a Python that has the package, with stream.py: both say the same. A
-# streamer that goes leaves a hover.
+# Flies the simulated vehicle over UDP. A streamer that goes leaves a hover. Given a Python that has the package, a whole flight follows, with
+# a link that loses frames and an obstacle that turns out lower, of the streamer and of stream.py: both say the same. That takes minutes.
 # Usage: docs/examples/offboard/run_offboard_test.sh VEHICLE STREAM PYTHON|none PROBLEM.yaml OBSTACLE ITERATIONS
 set -euo pipefail
 
@@ -29,14 +29,14 @@ says() {
     grep -qF -- "$2" "$work/$1" || { echo "$1: no '$2'" >&2 && exit 1; }
 }
 
+fly gone 1 --patience 5 -- "$stream" --stop-after 5
+says gone.vehicle 'ends in hold, since set-points did not come'
+[[ $python != none ]] || exit 0
+
 faults=(--loss 0.02 --jitter 0.01 --lower "$obstacle" 0.05)
 fly cpp 0 "${faults[@]}" -- "$stream" --lower "$obstacle" 0.05
 says cpp 'is 0.050 m lower than on the drawing'
 says cpp.vehicle 'ends in hold'
-if [[ $python != none ]]; then
-    fly python 0 "${faults[@]}" -- "$python" "$here/stream.py" --lower "$obstacle" 0.05
-    diff "$work/cpp" "$work/python" >&2
-    diff "$work/cpp.vehicle" "$work/python.vehicle" >&2
-fi
-fly gone 1 -- "$stream" --stop-after 5
-says gone.vehicle 'ends in hold, since set-points did not come'
+fly python 0 "${faults[@]}" -- "$python" "$here/stream.py" --lower "$obstacle" 0.05
+diff "$work/cpp" "$work/python" >&2
+diff "$work/cpp.vehicle" "$work/python.vehicle" >&2

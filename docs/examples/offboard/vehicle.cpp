@@ -5,6 +5,7 @@
 //   delay,
 //                               silence from that second on; seed of their luck
 //   [--lock-step]               the clock waits for a set-point with the time of the last telemetry; default: real time
+//   [--patience S]              it waits so long for that; default: 120
 //   [--instance N]              adds N to both ports: 14580, on which it listens, and 14540, to which it sends
 //   [--log FILE.csv]            writes the true flight
 // Exit codes: 0 it ends in a hover, 1 it does not, 2 bad input, 3 nobody came.
@@ -44,6 +45,7 @@ struct Options {
     unsigned seed = 1;
     int instance = 0;
     bool is_lock_step = false;
+    double patience_s = wait_for_somebody_s;  ///< for set-points in lock-step
 };
 
 Options options_of(int count, char** words) {
@@ -70,6 +72,8 @@ Options options_of(int count, char** words) {
             options.faults.silent_from_s = std::stod(next());
         } else if (word == "--seed") {
             options.seed = static_cast<unsigned>(std::stoul(next()));
+        } else if (word == "--patience") {
+            options.patience_s = std::stod(next());
         } else if (word == "--instance") {
             options.instance = std::stoi(next());
         } else if (word == "--log") {
@@ -163,7 +167,7 @@ class Simulation {
     void receive() {
         if (options_.is_lock_step) {
             while (vehicle_.is_telemetry_due() && !is_alone_) {
-                const auto datagram = socket_.receive(wait_for_somebody_s);
+                const auto datagram = socket_.receive(options_.patience_s);
                 is_alone_ = !datagram || datagram->empty();
                 if (!is_alone_) {
                     link_.put(vehicle_.time_s(), *datagram);
