@@ -137,6 +137,7 @@ ExitCode show(const ShownRobot& shown, const RobotShowArguments& given, const st
         }
         require_pages();
         std::vector<std::string> said;
+        said.reserve(warnings.size());
         for (const LocatedError& warning : warnings) {
             said.push_back(to_text(warning));
         }

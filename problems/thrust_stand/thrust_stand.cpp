@@ -227,6 +227,7 @@ ThrustStand parse_thrust_stand(const std::vector<std::pair<std::string, std::str
 ThrustStand read_thrust_stand(const std::vector<std::filesystem::path>& files, const ThrustStandSettings& settings) {
     constexpr std::size_t max_bytes = std::size_t{256} << 20U;
     std::vector<std::pair<std::string, std::string>> texts;
+    texts.reserve(files.size());
     for (const std::filesystem::path& file : files) {
         texts.emplace_back(file.string(), naming(file, [&] { return read_whole_file(file, max_bytes); }));
     }

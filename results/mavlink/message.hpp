@@ -38,7 +38,7 @@ template <class Message, class Number>
 
 /// MAVLink's name of a number's type.
 template <class Number>
-inline constexpr std::string_view type_name = "";
+inline constexpr std::string_view type_name{};
 template <>
 inline constexpr std::string_view type_name<std::uint8_t> = "uint8_t";
 template <>
