@@ -60,7 +60,7 @@ class Streamer {
     void take_new_plan();
     void end(const std::string& why);
     [[nodiscard]] std::string frames();
-    void say(const std::string& text) const;
+    void say(const std::string& line) const;
 
     StreamerOptions options_;
     downwash::SpaceProblem drawing_;

@@ -38,7 +38,7 @@ UdpSocket::~UdpSocket() {
     ::close(descriptor_);
 }
 
-void UdpSocket::send(const std::string& datagram) {
+void UdpSocket::send(const std::string& datagram) const {
     static_cast<void>(::send(descriptor_, datagram.data(), datagram.size(), 0));
 }
 

@@ -13,7 +13,7 @@ class UdpSocket {
     UdpSocket& operator=(const UdpSocket&) = delete;
 
     /// What nobody listens to is lost.
-    void send(const std::string& datagram);
+    void send(const std::string& datagram) const;
     /// The next datagram, empty if nobody listens at the other port; nothing if none comes in time.
     std::optional<std::string> receive(double timeout_s);
 
