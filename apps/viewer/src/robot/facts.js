@@ -2,7 +2,7 @@
 
 import {foreign, h} from "../dom.js";
 import {degrees, meters, number, quantity} from "../format.js";
-import {scrolled, triple} from "../space/facts.js";
+import {make_joints, scrolled, triple} from "../space/facts.js";
 
 const percent = (share) => `${number(100 * share, ".0f")}\u00a0%`;
 
@@ -47,21 +47,6 @@ function make_masses({robot, facts, report}, pose) {
         scrolled(
             "Masses", ["of", "mass", "centre [m]", report.is_planar ? "inertia [kg m²]" : "ixx, iyy, izz [kg m²]"], rows),
         h("p", {class: "muted"}, "From the multirotor's centre of mass: x forward, y left, z up."));
-}
-
-function make_joints({robot}) {
-    if (robot.links.length === 0) {
-        return null;
-    }
-    return h(
-        "div", {class: "card"}, h("h3", null, "Joints"),
-        scrolled(
-            "Joints", ["no.", "place [m]", "axis", "limits", "torque"],
-            robot.links.map(
-                (link, i) =>
-                    [String(i + 1), triple(link.joint_m), triple(link.axis),
-                     link.limits_rad ? link.limits_rad.map(degrees).join(" to ") : "none",
-                     quantity(link.max_torque_nm, ".3~f", "N m")])));
 }
 
 export function make_facts(model, pose) {

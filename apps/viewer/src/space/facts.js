@@ -114,7 +114,8 @@ function make_rotors({robot}) {
                      `${number(rotor.min_thrust_n, ".3~f")} to ${number(rotor.max_thrust_n, ".3~f")}`])));
 }
 
-function make_joints({robot}) {
+/** The joints of an arm, also for the page of a robot. */
+export function make_joints({robot}) {
     if (robot.links.length === 0) {
         return null;
     }
