@@ -12,7 +12,7 @@ cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 ./dev build --target programs >&2
 commit=$(sed -n 's/^#define DOWNWASH_SOURCE_COMMIT "\(.*\)"$/\1/p' build/bench/source_commit.hpp)
 names=("$@")
-[[ ${#names[@]} -gt 0 ]] || names=(bridge saving algorithms cost margins variants all first_certified certified)
+[[ ${#names[@]} -gt 0 ]] || names=(bridge saving algorithms cost margins variants all first_certified certified space)
 
 missed=0
 for name in "${names[@]}"; do
