@@ -13,6 +13,7 @@
 #include "downwash/base/quantile.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/logs/csv_columns.hpp"
+#include "downwash/logs/log_jumps.hpp"
 #include "downwash/logs/rotation.hpp"
 
 namespace downwash::logs {
@@ -24,7 +25,26 @@ constexpr std::size_t max_rows = 20'000'000, max_columns = 2000;
 struct Group {
     LogSeries* series;
     std::vector<std::optional<SignalColumn>> columns;  ///< empty: that number is 0
+    std::vector<std::size_t> valid;                    ///< columns of flags without which a row does not count
+    std::size_t invalid_rows = 0;
 };
+
+/// The columns of a counter of resets.
+struct WatchedColumns {
+    ResetWatch watch;
+    std::size_t counter;
+    std::vector<std::size_t> delta;
+};
+
+/// What a unit in the name of a column makes of its number at once. Times and angles are turned when all are read.
+double factor_of(const SignalColumn& column) {
+    return column.dimension == Dimension::angle || column.dimension == Dimension::time ? 1 : column.factor;
+}
+
+/// Whether a cell says no: "0", "False".
+bool is_false(std::string_view cell) {
+    return is_same_word(cell, "false") || parse_number<double>(cell) == 0.0;
+}
 
 bool is_missing(std::string_view cell) {
     return cell.empty() || is_same_word(cell, "nan");
@@ -50,6 +70,7 @@ class CsvLog {
                                                 "': expected t_s, time or timestamp, or --column t=NAME");
         }
         find_groups();
+        watch_counters();
         errors_.throw_any();
         read_rows(*time);
         errors_.throw_any();
@@ -57,6 +78,17 @@ class CsvLog {
         turn_angles();
         choose_rotor_unit();
         choose_axes();
+        if (columns_.is_topic_by_name()) {
+            log_.remarks.push_back(file_ +
+                                   ": its name tells a table that ulog2csv made of PX4's log: axes are north, " +
+                                   "east, down; --axes says otherwise");
+        }
+        for (const Group& group : groups_) {
+            if (group.invalid_rows > 0) {
+                log_.remarks.push_back(std::to_string(group.invalid_rows) + " rows of " + group.series->source +
+                                       " are skipped, since the autopilot says that they are not valid");
+            }
+        }
         if (late_rows_ > 0) {
             log_.remarks.push_back(file_ + ": " + std::to_string(late_rows_) +
                                    " rows are skipped, since their times are not later than those before");
@@ -106,7 +138,57 @@ class CsvLog {
             }
         }
         series.source = std::filesystem::path(file_).filename().string() + ": " + names;
-        groups_.push_back({&series, std::move(columns)});
+        groups_.push_back({&series, std::move(columns), {}, 0});
+        if (columns_.topic() == UlogTopic::local_position) {
+            add_flags(&series == &log_.position_m     ? std::array{"xy_valid", "z_valid"}
+                      : &series == &log_.velocity_m_s ? std::array{"v_xy_valid", "v_z_valid"}
+                                                      : std::array{"", ""});
+        }
+    }
+
+    /// Flags of the last group.
+    void add_flags(const std::array<const char*, 2>& names) {
+        for (const char* name : names) {
+            if (const auto column = csv_.find(name)) {
+                groups_.back().valid.push_back(*column);
+            }
+        }
+    }
+
+    void watch_counters() {
+        if (columns_.topic() == UlogTopic::none) {
+            return;
+        }
+        for (const ResetCounter& counter : reset_counters) {
+            const auto column = csv_.find(counter.counter);
+            if (!column) {
+                continue;
+            }
+            WatchedColumns& watched = watched_.emplace_back(WatchedColumns{ResetWatch(counter), *column, {}});
+            for (std::size_t i = 0; i < counter.count; ++i) {
+                const std::string name(counter.delta);
+                if (const auto delta = csv_.find(counter.count == 1 ? name : name + "[" + std::to_string(i) + "]")) {
+                    watched.delta.push_back(*delta);
+                }
+            }
+            if (watched.delta.size() < counter.count) {
+                watched.delta.clear();
+            }
+        }
+    }
+
+    void see_counters(double time) {
+        std::vector<double> delta;
+        for (WatchedColumns& watched : watched_) {
+            const auto number = parse_number<double>(csv_.cell(watched.counter));
+            delta.clear();
+            for (const std::size_t column : watched.delta) {
+                delta.push_back(parse_number<double>(csv_.cell(column)).value_or(0));
+            }
+            if (number) {
+                watched.watch.see(time, *number, delta);
+            }
+        }
     }
 
     void find_groups() {
@@ -135,14 +217,19 @@ class CsvLog {
             if (!t) {
                 continue;
             }
+            see_counters(*t);
             bool is_late = false;
-            for (const Group& group : groups_) {
+            for (Group& group : groups_) {
+                if (std::ranges::any_of(group.valid, [this](std::size_t flag) { return is_false(csv_.cell(flag)); })) {
+                    ++group.invalid_rows;
+                    continue;
+                }
                 row.clear();
                 for (const auto& column : group.columns) {
                     if (!column) {
                         row.push_back(0);
                     } else if (!is_missing(csv_.cell(column->column))) {
-                        row.push_back(csv_.number(column->column).value_or(0));
+                        row.push_back(factor_of(*column) * csv_.number(column->column).value_or(0));
                     }
                 }
                 is_late |= row.size() == group.columns.size() && !group.series->add(*t, row);
@@ -169,22 +256,25 @@ class CsvLog {
                 t *= unit_s;
             }
         }
+        for (const WatchedColumns& watched : watched_) {
+            for (LogJump jump : watched.watch.jumps()) {
+                jump.t_s *= unit_s;
+                log_.jumps.push_back(std::move(jump));
+            }
+        }
     }
 
     /// The unit that the name of the column tells, or that in which rows are a likely time apart.
     double time_unit_s(const SignalColumn& time) {
         const std::string& name = csv_.names()[time.column];
-        if (name.ends_with("_s")) {
-            return 1;
+        if (time.dimension == Dimension::time) {
+            return time.factor;
         }
-        if (name.ends_with("US") || name.ends_with("_us") || (name == "timestamp" && columns_.is_of_ulog())) {
+        if (name.ends_with("US") || (name == "timestamp" && columns_.topic() != UlogTopic::none)) {
             return 1e-6;
         }
-        if (name == "%time" || name.ends_with("_ns")) {
+        if (name == "%time") {
             return 1e-9;
-        }
-        if (name.ends_with("_ms")) {
-            return 1e-3;
         }
         std::vector<double> steps;
         for (const Group& group : groups_) {
@@ -206,12 +296,12 @@ class CsvLog {
         return unit->unit_s;
     }
 
-    [[nodiscard]] double angle_unit_rad(const LogSeries& angles, std::string_view first_name, const char* what) {
+    [[nodiscard]] double angle_unit_rad(const LogSeries& angles, const char* what) {
         if (options_.angles_in_degrees) {
             return *options_.angles_in_degrees ? 1 / degrees_per_radian : 1;
         }
-        if (first_name.ends_with("_rad") || first_name.ends_with("_deg")) {
-            return first_name.ends_with("_rad") ? 1 : 1 / degrees_per_radian;
+        if (const SignalColumn first = first_of(angles); first.dimension == Dimension::angle) {
+            return first.factor;
         }
         constexpr double beyond_radians = 6.5;
         const bool is_in_degrees =
@@ -221,30 +311,28 @@ class CsvLog {
         return is_in_degrees ? 1 / degrees_per_radian : 1;
     }
 
-    std::string_view name_in(const LogSeries& series) const {
+    SignalColumn first_of(const LogSeries& series) const {
         const auto group = std::ranges::find(groups_, &series, &Group::series);
-        for (const auto& column : group->columns) {
-            if (column) {
-                return csv_.names()[column->column];
-            }
-        }
-        return {};
+        const auto first = std::ranges::find_if(group->columns, [](const auto& column) { return column.has_value(); });
+        return **first;
     }
 
     void turn_angles() {
         if (!log_.joints_rad.empty()) {
-            const double unit = angle_unit_rad(log_.joints_rad, name_in(log_.joints_rad), "joints");
+            const double unit = angle_unit_rad(log_.joints_rad, "joints");
+            const bool have_rates_units =
+                !log_.joint_rates_rad_s.empty() && first_of(log_.joint_rates_rad_s).dimension == Dimension::rate;
             for (double& angle : log_.joints_rad.numbers) {
                 angle *= unit;
             }
             for (double& rate : log_.joint_rates_rad_s.numbers) {
-                rate *= unit;
+                rate *= have_rates_units ? 1 : unit;
             }
         }
         if (angles_.empty()) {
             return;
         }
-        const double unit = angle_unit_rad(angles_, name_in(angles_), "attitude");
+        const double unit = angle_unit_rad(angles_, "attitude");
         log_.attitude.width = 4;
         log_.attitude.source = angles_.source;
         for (std::size_t i = 0; i < angles_.rows(); ++i) {
@@ -257,9 +345,9 @@ class CsvLog {
         if (log_.rotor_commands.empty()) {
             return;
         }
-        const std::string_view name = name_in(log_.rotor_commands);
-        if (name.ends_with("_n")) {
-            log_.rotor_unit = RotorUnit::newton;
+        const Dimension dimension = first_of(log_.rotor_commands).dimension;
+        if (dimension == Dimension::force || dimension == Dimension::time) {
+            log_.rotor_unit = dimension == Dimension::force ? RotorUnit::newton : RotorUnit::microseconds;
             return;
         }
         const double most = *std::ranges::max_element(log_.rotor_commands.numbers);
@@ -300,6 +388,7 @@ class CsvLog {
     FlightLog log_;
     LogSeries angles_;
     std::vector<Group> groups_;
+    std::vector<WatchedColumns> watched_;
     std::size_t late_rows_ = 0;
 };
 

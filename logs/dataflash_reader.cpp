@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "downwash/base/angles.hpp"
@@ -56,7 +57,11 @@ struct Message {
     const DataFlashField* time = nullptr;
     std::vector<Taken> taken;
     bool is_parameter = false, is_outputs = false;
+    bool is_event = false, is_error = false;
 };
+
+// Numbers of EV and ERR (ArduPilot, libraries/AP_Logger/AP_Logger.h).
+constexpr double height_reset_event = 60, heading_reset_event = 62, estimator_error = 24;
 
 class DataFlash {
  public:
@@ -136,6 +141,8 @@ class DataFlash {
         message->time = format.find("TimeUS");
         message->is_parameter = format.name == "PARM";
         message->is_outputs = format.name == "RCOU" && message->time != nullptr;
+        message->is_event = format.name == "EV" && message->time != nullptr;
+        message->is_error = format.name == "ERR" && message->time != nullptr;
         for (std::size_t rank = 0; rank < sources.size() && message->time != nullptr; ++rank) {
             if (sources[rank].message == format.name) {
                 take_source(rank, *message);
@@ -204,6 +211,9 @@ class DataFlash {
         if (message.is_parameter) {
             take_parameter(message.format, bytes);
         }
+        if (message.is_event || message.is_error) {
+            take_jump(message, bytes);
+        }
         for (const Taken& taken : message.taken) {
             if (taken.instance && number_in(*taken.instance, bytes) != 0) {
                 continue;
@@ -219,6 +229,30 @@ class DataFlash {
             }
             taken.into->late_rows += taken.into->series.add(1e-6 * number_in(*message.time, bytes), row_) ? 0 : 1;
         }
+    }
+
+    /// What says that the estimator was reset, or that the autopilot flies by another one from here on.
+    void take_jump(const Message& message, std::string_view bytes) {
+        const auto number = [&](std::string_view name) {
+            const DataFlashField* field = message.format.find(name);
+            return field != nullptr && field->is_number ? number_in(*field, bytes) : -1;
+        };
+        LogJump jump;
+        jump.t_s = 1e-6 * number_in(*message.time, bytes);
+        const double what = number(message.is_event ? "Id" : "Subsys");
+        if (message.is_event && (what == height_reset_event || what == heading_reset_event)) {
+            jump.kind = what == height_reset_event ? JumpKind::height : JumpKind::heading;
+            jump.source = "EV " + to_text(what);
+        } else if (message.is_error && what == estimator_error) {
+            jump.kind = JumpKind::estimator;
+            jump.source = "ERR 24: it flies by core " + to_text(number("ECode"));
+            log_.remarks.push_back("the autopilot flies by core " + to_text(number("ECode")) +
+                                   " of its estimator from " + to_fixed_text(jump.t_s, 1) +
+                                   " s of its clock on; places here are those of core 0");
+        } else {
+            return;
+        }
+        log_.jumps.push_back(std::move(jump));
     }
 
     /// SERVO3_FUNCTION = 33: channel 3 drives motor 1.

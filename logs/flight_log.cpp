@@ -76,12 +76,30 @@ std::string_view name_of(LogFormat format) noexcept {
     return "";
 }
 
+std::string_view name_of(JumpKind kind) noexcept {
+    switch (kind) {
+        case JumpKind::position:
+            return "position";
+        case JumpKind::height:
+            return "height";
+        case JumpKind::heading:
+            return "heading";
+        case JumpKind::estimator:
+            return "estimator";
+    }
+    return "";
+}
+
 void turn_over(FlightLog& log) {
     for (LogSeries* series :
          {&log.position_m, &log.velocity_m_s, &log.body_rates_rad_s, &log.specific_force_m_s2, &log.setpoint_m}) {
         change_signs(*series, 1, 3);
     }
     change_signs(log.attitude, 2, 4);  // half a turn about x on either side of the rotation
+    for (LogJump& jump : log.jumps) {
+        jump.step_m = {jump.step_m[0], -jump.step_m[1], -jump.step_m[2]};
+        jump.turn_rad = -jump.turn_rad;
+    }
 }
 
 void finish(FlightLog& log) {
@@ -101,6 +119,9 @@ void finish(FlightLog& log) {
     }
     log.start_s = first_s;
     log.duration_s = last_s - first_s;
+    for (LogJump& jump : log.jumps) {
+        jump.t_s -= first_s;
+    }
     normalise_attitude(log.attitude);
     if (log.recorded_axes == LogAxes::down) {
         turn_over(log);

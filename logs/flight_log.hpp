@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "downwash/base/export.hpp"
+#include "downwash/base/vector3.hpp"
 #include "downwash/logs/log_series.hpp"
 
 namespace downwash {
@@ -39,6 +40,26 @@ enum class RotorUnit : std::uint8_t {
     microseconds,  ///< pulse width [us]: PX4's actuator_outputs, ArduPilot's RCOU
 };
 
+/// What of a log jumps although the vehicle does not.
+enum class JumpKind : std::uint8_t {
+    position,   ///< x and y
+    height,     ///< z
+    heading,    ///< the attitude about z
+    estimator,  ///< the autopilot flies by another estimator from there on, or all of it was reset
+};
+
+/// Name for people and files: "position".
+[[nodiscard]] DOWNWASH_EXPORT std::string_view name_of(JumpKind kind) noexcept;
+
+/// A moment at which an estimator was reset: what it tells of the vehicle jumps.
+struct LogJump {
+    JumpKind kind = JumpKind::position;
+    double t_s = 0;       ///< of the first row behind it, as those of series
+    Vector3 step_m{};     ///< by which places jump, as far as the log says it; in the world's axes
+    double turn_rad = 0;  ///< by which the heading jumps, counterclockwise seen from above
+    std::string source;   ///< what tells it: "vehicle_local_position.xy_reset_counter"
+};
+
 /// What was recorded in a flight, in SI units and in axes with z up whatever the log has: the world's x and y are those
 /// of the log if it has z up; of a log in north, east, down they point north and west. The body's x points forward, y
 /// to the left, z up. A log of a flight in a vertical plane has that plane's x, 0 and z as its position.
@@ -63,6 +84,8 @@ struct FlightLog {
     LogSeries rotor_commands;       ///< one for each rotor, in the order of the log
     RotorUnit rotor_unit = RotorUnit::newton;
     LogSeries setpoint_m;  ///< 3: position that the autopilot was told to be at, in the world
+
+    std::vector<LogJump> jumps;  ///< at rising times
 
     std::vector<std::string> remarks;  ///< what was guessed, skipped or left out, as sentences for people
 };

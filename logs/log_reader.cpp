@@ -8,6 +8,7 @@
 #include "downwash/base/text.hpp"
 #include "downwash/logs/csv_log.hpp"
 #include "downwash/logs/dataflash_reader.hpp"
+#include "downwash/logs/log_jumps.hpp"
 #include "downwash/logs/rosbag_reader.hpp"
 #include "downwash/logs/ulog_reader.hpp"
 
@@ -20,6 +21,11 @@ void take_missing(FlightLog& log, FlightLog&& other) {
         log.recorded_axes = other.recorded_axes;
         log.axes_source = other.axes_source;
     }
+    if (other.axes_source == AxesSource::format && log.axes_source == AxesSource::format &&
+        other.recorded_axes != log.recorded_axes) {
+        turn_over(other);
+    }
+    log.jumps.insert(log.jumps.end(), other.jumps.begin(), other.jumps.end());
     if (log.rotor_commands.empty()) {
         log.rotor_unit = other.rotor_unit;
     }
@@ -61,6 +67,24 @@ FlightLog read_tables(const std::vector<std::filesystem::path>& files, const Log
     return log;
 }
 
+/// What to do with a file that is no log that can be read; empty: nothing is known.
+std::string_view remedy_for(std::string_view first_bytes) {
+    using namespace std::string_view_literals;
+    constexpr std::string_view of_ros_2 =
+        "is a bag of ROS 2: `rosbags-convert` (Python's rosbags) makes a bag of ROS 1 of its folder, compressed or not";
+    if (first_bytes.starts_with("SQLite format 3\0"sv) || first_bytes.starts_with("\x89MCAP0"sv)) {
+        return of_ros_2;
+    }
+    if (first_bytes.starts_with("\x28\xB5\x2F\xFD"sv)) {
+        return "is compressed by zstd: `unzstd` unpacks it; a bag of ROS 2 becomes one of ROS 1 by `rosbags-convert`";
+    }
+    if (first_bytes.starts_with("BZh"sv) || first_bytes.starts_with("\x1F\x8B"sv) ||
+        first_bytes.starts_with("PK\x03\x04"sv) || first_bytes.starts_with("\x04\x22\x4D\x18"sv)) {
+        return "is compressed: unpack it first";
+    }
+    return {};
+}
+
 FlightLog read_binary(logs::LogBytes& bytes, LogFormat format, const LogOptions& options) {
     return format == LogFormat::ulog        ? logs::read_ulog(bytes, options)
            : format == LogFormat::dataflash ? logs::read_dataflash(bytes, options)
@@ -73,6 +97,7 @@ FlightLog finished(FlightLog log) {
                           (log.remarks.empty() ? "" : "; " + joined(log.remarks, "; ")));
     }
     finish(log);
+    logs::find_jumps(log);
     return log;
 }
 
@@ -90,6 +115,9 @@ FlightLog read_flight_log(const std::vector<std::filesystem::path>& files, const
     const auto format_of = [&options](const std::filesystem::path& file) {
         constexpr std::size_t enough = 16;
         const std::string bytes = naming(file, [&] { return read_file(file, enough); });
+        if (const std::string_view remedy = remedy_for(bytes); !remedy.empty()) {
+            throw_input_error(file.string() + " " + std::string(remedy));
+        }
         return options.format.value_or(log_format_of(bytes));
     };
     if (files.size() > 1) {

@@ -12,6 +12,7 @@
 #include "downwash/base/byte_order.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/logs/candidate_series.hpp"
+#include "downwash/logs/log_jumps.hpp"
 #include "downwash/logs/ulog_formats.hpp"
 
 namespace downwash::logs {
@@ -63,13 +64,34 @@ struct Taken {
     bool counts_used = false;  ///< the width is as many as are in use
 };
 
+/// A counter of resets in the messages of a subscription.
+struct Watched {
+    ResetWatch* watch;
+    Place counter;
+    std::vector<Place> delta;
+};
+
 struct Subscription {
     std::string message;
     std::size_t bytes = 0;
     Place time{}, sample_time{};
     bool has_sample_time = false;
     std::vector<Taken> taken;
+    std::vector<Watched> watched;
 };
+
+std::vector<Place> places_of(const ULogField& field, std::size_t count) {
+    const std::size_t bytes = field.type == NumberType::f64 ? 8 : 4;
+    std::vector<Place> places;
+    for (std::size_t i = 0; i < count; ++i) {
+        places.push_back({field.type, field.at + i * bytes});
+    }
+    return places;
+}
+
+bool is_real(NumberType type) {
+    return type == NumberType::f32 || type == NumberType::f64;
+}
 
 class ULog {
  public:
@@ -84,6 +106,13 @@ class ULog {
         log_.recorded_axes = options_.axes.value_or(LogAxes::down);
         log_.axes_source = options_.axes ? AxesSource::declared : AxesSource::format;
         choose(candidates_, log_);
+        for (const ResetWatch& watch : watches_) {
+            // A topic that counts all resets together is only asked where it tells the places.
+            if (watch.counter().kind != JumpKind::estimator ||
+                log_.position_m.source.starts_with(watch.counter().message)) {
+                log_.jumps.insert(log_.jumps.end(), watch.jumps().begin(), watch.jumps().end());
+            }
+        }
         return std::move(log_);
     }
 
@@ -182,7 +211,7 @@ class ULog {
         if (!layout.error.empty()) {
             fail("the subscription of '" + excerpt(name) + "': " + layout.error);
         }
-        Subscription subscription{std::string(name), layout.bytes, {}, {}, false, {}};
+        Subscription subscription{std::string(name), layout.bytes, {}, {}, false, {}, {}};
         const auto time = layout.fields.find("timestamp");
         if (instance == 0 && time != layout.fields.end()) {
             subscription.time = {time->second.type, time->second.at};
@@ -195,8 +224,32 @@ class ULog {
                     take_topic(rank, layout, subscription);
                 }
             }
+            for (const ResetCounter& counter : reset_counters) {
+                if (counter.message == name) {
+                    watch(counter, layout, subscription);
+                }
+            }
         }
         subscriptions_[id] = std::move(subscription);
+    }
+
+    void watch(const ResetCounter& counter, const ULogFormats::Layout& layout, Subscription& subscription) {
+        const auto field = layout.fields.find(counter.counter);
+        if (field == layout.fields.end()) {
+            return;
+        }
+        auto known =
+            std::ranges::find_if(watches_, [&counter](const ResetWatch& each) { return &each.counter() == &counter; });
+        if (known == watches_.end()) {
+            watches_.emplace_back(counter);
+            known = watches_.end() - 1;
+        }
+        Watched watched{&*known, {field->second.type, field->second.at}, {}};
+        const auto delta = layout.fields.find(counter.delta);
+        if (delta != layout.fields.end() && delta->second.count >= counter.count && is_real(delta->second.type)) {
+            watched.delta = places_of(delta->second, counter.count);
+        }
+        subscription.watched.push_back(std::move(watched));
     }
 
     void take_topic(std::size_t rank, const ULogFormats::Layout& layout, Subscription& subscription) {
@@ -207,12 +260,11 @@ class ULog {
             if (field == layout.fields.end() || field->second.count < count) {
                 return false;
             }
-            const auto [type, at, all] = field->second;
-            const std::size_t bytes = type == NumberType::f64 ? 8 : 4;
-            for (std::size_t i = 0; i < (count == 0 ? std::min(all, max_rotors_in_log) : count); ++i) {
-                taken.numbers.push_back({type, at + i * bytes});
-            }
-            return type == NumberType::f32 || type == NumberType::f64;
+            const ULogField& found = field->second;
+            const std::vector<Place> places =
+                places_of(found, count == 0 ? std::min(found.count, max_rotors_in_log) : count);
+            taken.numbers.insert(taken.numbers.end(), places.begin(), places.end());
+            return is_real(found.type);
         };
         const bool is_there = topic.array.empty()
                                   ? std::ranges::all_of(topic.fields, [&](auto name) { return add(name, 1); })
@@ -260,6 +312,21 @@ class ULog {
         for (const Taken& taken : subscription->taken) {
             take_row(*subscription, taken, data.data());
         }
+        for (const Watched& watched : subscription->watched) {
+            row_.clear();
+            for (const Place& place : watched.delta) {
+                row_.push_back(number_of(place.type, data.data() + place.at));
+            }
+            watched.watch->see(time_of(*subscription, data.data()),
+                               number_of(watched.counter.type, data.data() + watched.counter.at), row_);
+        }
+    }
+
+    /// When what a message tells was so [s].
+    static double time_of(const Subscription& subscription, const char* data) {
+        const auto number = [data](const Place& place) { return number_of(place.type, data + place.at); };
+        const double sample_us = subscription.has_sample_time ? number(subscription.sample_time) : 0;
+        return 1e-6 * (sample_us > 0 ? sample_us : number(subscription.time));
     }
 
     void take_row(const Subscription& subscription, const Taken& taken, const char* data) {
@@ -284,9 +351,7 @@ class ULog {
         if (row_.empty() || !std::ranges::all_of(row_, [](double each) { return std::isfinite(each); })) {
             return;
         }
-        double time_us = subscription.has_sample_time ? number(subscription.sample_time) : 0;
-        time_us = time_us > 0 ? time_us : number(subscription.time);
-        taken.into->late_rows += series.add(1e-6 * time_us, row_) ? 0 : 1;
+        taken.into->late_rows += series.add(time_of(subscription, data), row_) ? 0 : 1;
     }
 
     LogBytes& bytes_;
@@ -296,6 +361,7 @@ class ULog {
     ULogFormats formats_;
     std::vector<std::optional<Subscription>> subscriptions_{std::size_t{65536}};
     std::deque<CandidateSeries> candidates_;  // whose elements stay where they are
+    std::deque<ResetWatch> watches_;          // as do these
     std::vector<double> row_;
     std::size_t dropouts_ = 0;
 };

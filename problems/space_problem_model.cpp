@@ -117,6 +117,7 @@ SpaceFlight SpaceProblemModel::fly(const SpacePlan& plan, const SpaceExecutionSe
     flight.world = settings.world.value_or(SpaceWorld{});
     flight.settles = settings.world.has_value() && !settings.start && is_at_rest(problem_.start);
     flight.goals = goals;
+    flight.measures_clearance = settings.measures_clearance;
     flight.is_over = settings.is_over;
     flight.energy_budget_j = problem_.energy_budget_j;
     flight.carry = settings.start ? carry_of(robot, *settings.start) : problem_.start.carry;

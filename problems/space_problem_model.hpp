@@ -30,6 +30,7 @@ struct SpaceExecutionSettings {
     /// Empty: the nominal one. In a world a vehicle that begins at rest at the problem's start has hovered there.
     std::optional<SpaceWorld> world;
     const SpaceGoalRule* goals = nullptr;  ///< in place of the problem's; nullptr: those
+    bool measures_clearance = true;        ///< false: rows have an infinite one, and the flight takes less time
     std::optional<AnySpaceState> start;    ///< the vehicle, in place of that at the problem's start
     StopCondition is_over;
 };

@@ -72,6 +72,24 @@ Json json_of(const EnvelopeFigures& figures) {
             {"outside", std::move(outside)}};
 }
 
+Json json_of(const LogJump& jump) {
+    return {{"at_s", jump.t_s},
+            {"what", name_of(jump.kind)},
+            {"step_m", jump.step_m},
+            {"turn_rad", jump.turn_rad},
+            {"source", jump.source}};
+}
+
+std::string jump_text(const LogJump& jump) {
+    std::string by;
+    if (const double step_m = std::sqrt(dot(jump.step_m, jump.step_m)); step_m > 0) {
+        by = " by " + millimetres(step_m);
+    } else if (jump.turn_rad != 0) {
+        by = fmt::format(" by {:.2f} deg", jump.turn_rad * degrees_per_radian);
+    }
+    return fmt::format("{:.2f} s: {}{} ({})", jump.t_s, name_of(jump.kind), by, excerpt(jump.source));
+}
+
 std::string_view source_text(AxesSource source) {
     return source == AxesSource::declared ? "declared" : source == AxesSource::format ? "by format" : "guessed";
 }
@@ -91,6 +109,19 @@ std::string errors_text(const ErrorFigures& errors) {
                : fmt::format("rms {} mm (x {}, y {}, z {}), max {} mm (x {}, y {}, z {})", mm(errors.rms_m[3]),
                              mm(errors.rms_m[0]), mm(errors.rms_m[1]), mm(errors.rms_m[2]), mm(errors.max_m[3]),
                              mm(errors.max_m[0]), mm(errors.max_m[1]), mm(errors.max_m[2]));
+}
+
+std::string jump_rows(const LogComparison& comparison) {
+    std::string text = table_row(
+        "jumps", "the estimator was reset in flight: the log jumps, not the vehicle. All errors here contain that");
+    for (std::size_t i = 0; i < std::min(comparison.jumps.size(), most_shown); ++i) {
+        text += table_row("", jump_text(comparison.jumps[i]));
+    }
+    if (comparison.jumps.size() > most_shown) {
+        text += table_row("", fmt::format("and {} more", comparison.jumps.size() - most_shown));
+    }
+    return text + table_row("", fmt::format("tracking without {:.0f} s behind each: {}", after_jump_s,
+                                            errors_text(comparison.tracking_apart)));
 }
 
 std::string thrust_rows(const ThrustFigures& thrust, RotorUnit unit) {
@@ -156,6 +187,11 @@ Json json_of(const ShownComparison& shown, const Json& log) {
     document["planned_outcome"] = comparison.planned_outcome;
     document["tracking"] = json_of(comparison.tracking);
     document["from_planned_flight"] = json_of(comparison.from_planned);
+    Json& jumps = document["jumps"] = Json::array();
+    for (const LogJump& jump : comparison.jumps) {
+        jumps.push_back(json_of(jump));
+    }
+    document["tracking_apart_from_jumps"] = comparison.jumps.empty() ? Json() : json_of(comparison.tracking_apart);
     document["yaw"] = comparison.yaw ? json_of(*comparison.yaw) : Json();
     Json& joints = document["joints"] = Json::array();
     for (const AngleFigures& joint : comparison.joints) {
@@ -197,8 +233,9 @@ std::string text_of(const ShownComparison& shown, const Json& log) {
     const LogComparison& comparison = shown.comparison;
     const LogAlignment& alignment = comparison.alignment;
     std::string text =
-        fmt::format("The vehicle was {:.0f} mm from its reference (root mean square), {:.0f} mm at most.\n\n",
-                    1000 * comparison.tracking.rms_m[3], 1000 * comparison.tracking.max_m[3]);
+        fmt::format("The vehicle was {:.0f} mm from its reference (root mean square), {:.0f} mm at most.{}\n\n",
+                    1000 * comparison.tracking.rms_m[3], 1000 * comparison.tracking.max_m[3],
+                    comparison.jumps.empty() ? "" : " The log jumps meanwhile: see below.");
     text += table_row("log",
                       fmt::format("{}, {:.1f} s", log["format"].get<std::string>(), log["duration_s"].get<double>()));
     for (const Json& series : log["series"]) {
@@ -237,6 +274,9 @@ std::string text_of(const ShownComparison& shown, const Json& log) {
         text += table_row(fmt::format("  joint {}", i + 1), angle_text(comparison.joints[i]));
     }
     text += table_row("planned flight", errors_text(comparison.from_planned));
+    if (!comparison.jumps.empty()) {
+        text += jump_rows(comparison);
+    }
     text += table_row("clearance", clearance_text(comparison.clearance));
     text += table_row("  as planned", clearance_text(comparison.planned_clearance));
     if (std::isfinite(comparison.clearance.clearance_m) && (!comparison.has_attitude || !comparison.has_joints)) {

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/robot_import/enclosing_solid.hpp"
+#include "downwash/robot_import/mesh_solids.hpp"
 #include "downwash/scene/mesh_file.hpp"
 
 namespace downwash::robot_import {
@@ -43,10 +45,11 @@ std::vector<Vector3> corners_of(const Box& box, const RigidTransform& outer) {
     return corners;
 }
 
-/// The vertices of a mesh, in axes that a transform leads to. Empty, with an error or a warning, if it cannot be read.
-std::vector<Vector3> mesh_vertices(const MeshReference& mesh, const TreeShape& shape, const TreeLink& link,
-                                   const RigidTransform& outer, bool skips_meshes, Findings& findings) {
-    const auto lacks = [&](const std::string& why) -> std::vector<Vector3> {
+/// The vertices of the pieces of a mesh, in axes that a transform leads to. Empty, with an error or a warning, if it
+/// cannot be read.
+std::vector<std::vector<Vector3>> mesh_pieces(const MeshReference& mesh, const TreeShape& shape, const TreeLink& link,
+                                              const RigidTransform& outer, bool skips_meshes, Findings& findings) {
+    const auto lacks = [&](const std::string& why) -> std::vector<std::vector<Vector3>> {
         const std::string text = "link '" + excerpt(link.name) + "': the mesh '" + excerpt(mesh.file) + "' " + why;
         if (skips_meshes) {
             findings.warn(shape.place, text + ": left out");
@@ -59,17 +62,25 @@ std::vector<Vector3> mesh_vertices(const MeshReference& mesh, const TreeShape& s
         return lacks("is not there: expected that file, or its package in a folder around this one");
     }
     try {
-        std::vector<Vector3> vertices = mesh.vertices_m.empty() ? read_mesh(mesh.file)->vertices_m : mesh.vertices_m;
-        for (Vector3& at : vertices) {
-            at = outer.placed({mesh.scale[0] * at[0], mesh.scale[1] * at[1], mesh.scale[2] * at[2]});
+        if (mesh.pieces.empty()) {
+            static_cast<void>(read_mesh(mesh.file));  // says why read_meshes() could not
         }
-        const BoundingBox bounds = vertices.empty() ? BoundingBox{} : bounds_around(vertices);
+        std::vector<std::vector<Vector3>> pieces = mesh.pieces;
+        std::vector<Vector3> corners;
+        for (std::vector<Vector3>& piece : pieces) {
+            for (Vector3& at : piece) {
+                at = outer.placed({mesh.scale[0] * at[0], mesh.scale[1] * at[1], mesh.scale[2] * at[2]});
+            }
+            const BoundingBox box = bounds_around(piece);
+            corners.insert(corners.end(), {box.low_m, box.high_m});
+        }
+        const BoundingBox bounds = corners.empty() ? BoundingBox{} : bounds_around(corners);
         constexpr double longest_m = 40;
         if (const double length_m = length_of(bounds.high_m - bounds.low_m); length_m > longest_m) {
             return lacks("is " + to_text(length_m, 4) +
                          " m long: expected metres; is it in mm? Then it needs scale=\"0.001 0.001 0.001\"");
         }
-        return vertices;
+        return pieces;
     } catch (const InputError& error) {
         return lacks(std::string("cannot be read (") + error.what() + "): expected .stl or .obj");
     }
@@ -87,8 +98,32 @@ SpaceBodyShape around(const std::vector<Vector3>& points_m, const std::string& w
     return solid.body;
 }
 
-std::optional<SpaceBodyShape> solid_of(const TreeShape& shape, const TreeLink& link, const RigidTransform& pose,
-                                       bool skips_meshes, Findings& findings) {
+/// One solid around each group of pieces of a mesh.
+std::vector<SpaceBodyShape> around_pieces(std::vector<std::vector<Vector3>> pieces, const std::string& what,
+                                          const TreeShape& shape, const TreeLink& link, const RigidTransform& outer,
+                                          Findings& findings) {
+    const std::size_t count = pieces.size();
+    const std::vector<std::vector<Vector3>> groups = joined_pieces(std::move(pieces));
+    if (groups.size() == 1) {
+        return {around(groups[0], what, shape, link, outer, findings)};
+    }
+    const Matrix3 axes = transposed(outer.rotation);
+    std::vector<SpaceBodyShape> solids;
+    double excess_m = 0;
+    for (const std::vector<Vector3>& group : groups) {
+        const EnclosingSolid solid = least_solid_around(group, {axes[0], axes[1], axes[2]});
+        excess_m = std::max(excess_m, solid.excess_m);
+        solids.push_back(solid.body);
+    }
+    findings.warn(shape.place, "link '" + excerpt(link.name) + "' has " + what + " of " + std::to_string(count) +
+                                   " separate pieces: taken are " + std::to_string(solids.size()) +
+                                   " solids around them, which stand out from the pieces' convex hulls by up to " +
+                                   to_text(excess_m, 2) + " m");
+    return solids;
+}
+
+std::vector<SpaceBodyShape> solids_of(const TreeShape& shape, const TreeLink& link, const RigidTransform& pose,
+                                      bool skips_meshes, Findings& findings) {
     const RigidTransform outer = pose * shape.pose;
     const std::string name = "link '" + excerpt(link.name) + "'";
     const auto require_size = [&](std::initializer_list<double> sizes_m) {
@@ -100,40 +135,38 @@ std::optional<SpaceBodyShape> solid_of(const TreeShape& shape, const TreeLink& l
     };
     if (const auto* box = std::get_if<Box>(&shape.form)) {
         if (!require_size({box->size_m[0], box->size_m[1], box->size_m[2]})) {
-            return std::nullopt;
+            return {};
         }
         if (!is_straight(outer.rotation)) {
-            return around(corners_of(*box, outer), "a box that is askew", shape, link, outer, findings);
+            return {around(corners_of(*box, outer), "a box that is askew", shape, link, outer, findings)};
         }
-        return SpaceBodyShape{Box{2.0 * half_extents(outer.rotation, 0.5 * box->size_m)}, outer.position_m};
+        return {{Box{2.0 * half_extents(outer.rotation, 0.5 * box->size_m)}, outer.position_m}};
     }
     if (const auto* cylinder = std::get_if<Cylinder>(&shape.form)) {
         if (!require_size({cylinder->radius_m, cylinder->length_m})) {
-            return std::nullopt;
+            return {};
         }
-        return SpaceBodyShape{Cylinder{cylinder->radius_m, cylinder->length_m, outer.rotation * cylinder->axis},
-                              outer.position_m};
+        return {{Cylinder{cylinder->radius_m, cylinder->length_m, outer.rotation * cylinder->axis}, outer.position_m}};
     }
     if (const auto* sphere = std::get_if<Sphere>(&shape.form)) {
         if (!require_size({sphere->radius_m})) {
-            return std::nullopt;
+            return {};
         }
-        return SpaceBodyShape{*sphere, outer.position_m};
+        return {{*sphere, outer.position_m}};
     }
     if (const auto* capsule = std::get_if<Capsule>(&shape.form)) {
         if (!require_size({capsule->radius_m})) {
-            return std::nullopt;
+            return {};
         }
-        return SpaceBodyShape{
-            Capsule{capsule->radius_m, outer.rotation * capsule->from_m, outer.rotation * capsule->to_m},
-            outer.position_m};
+        return {{Capsule{capsule->radius_m, outer.rotation * capsule->from_m, outer.rotation * capsule->to_m},
+                 outer.position_m}};
     }
     const auto& mesh = std::get<MeshReference>(shape.form);
-    const std::vector<Vector3> vertices = mesh_vertices(mesh, shape, link, outer, skips_meshes, findings);
-    if (vertices.empty()) {
-        return std::nullopt;
+    std::vector<std::vector<Vector3>> pieces = mesh_pieces(mesh, shape, link, outer, skips_meshes, findings);
+    if (pieces.empty()) {
+        return {};
     }
-    return around(vertices, "the mesh '" + excerpt(mesh.file) + "'", shape, link, outer, findings);
+    return around_pieces(std::move(pieces), "the mesh '" + excerpt(mesh.file) + "'", shape, link, outer, findings);
 }
 
 const std::vector<TreeShape>& shapes_of(const TreeLink& link) {
@@ -157,9 +190,8 @@ std::vector<SpaceBodyShape> collision_bodies(const KinematicTree& tree, const Ar
         }
         const RigidTransform pose{chain.pose[i].rotation, chain.pose[i].position_m - origin_m};
         for (const TreeShape& shape : shapes_of(link)) {
-            if (auto solid = solid_of(shape, link, pose, skips_meshes, findings)) {
-                bodies.push_back(*solid);
-            }
+            const std::vector<SpaceBodyShape> solids = solids_of(shape, link, pose, skips_meshes, findings);
+            bodies.insert(bodies.end(), solids.begin(), solids.end());
         }
     }
     return bodies;
@@ -176,7 +208,10 @@ double disc_radius_m(const TreeLink& link, bool skips_meshes, Findings& findings
         } else if (const auto* sphere = std::get_if<Sphere>(&shape.form)) {
             across_m = sphere->radius_m;
         } else if (const auto* mesh = std::get_if<MeshReference>(&shape.form)) {
-            const std::vector<Vector3> vertices = mesh_vertices(*mesh, shape, link, shape.pose, skips_meshes, findings);
+            std::vector<Vector3> vertices;
+            for (const auto& piece : mesh_pieces(*mesh, shape, link, shape.pose, skips_meshes, findings)) {
+                vertices.insert(vertices.end(), piece.begin(), piece.end());
+            }
             if (!vertices.empty()) {
                 const BoundingBox bounds = bounds_around(vertices);
                 const Vector3 size_m = bounds.high_m - bounds.low_m;

@@ -6,8 +6,9 @@
 
 namespace downwash::robot_import {
 
-/// The solids of one part in our axes, from a place. A mesh, or a box that is askew, becomes the least solid around it
-/// (least_solid_around()), with a warning of how much larger it is.
+/// The solids of one part in our axes, from a place. A box that is askew, and each group of pieces of a mesh
+/// (joined_pieces()), becomes the least solid around it (least_solid_around()), with a warning of how much larger it
+/// is.
 /// @param part 0: the multirotor, k: what turns with the k-th joint   @param origin_m the place, from the base's origin
 /// @param skipped links that have other solids: rotors
 std::vector<SpaceBodyShape> collision_bodies(const KinematicTree& tree, const ArmChain& chain, int part,

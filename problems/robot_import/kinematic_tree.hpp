@@ -18,10 +18,11 @@ namespace downwash::robot_import {
 
 /// A shape in a file of its own.
 struct MeshReference {
-    std::string file;                 ///< a path that can be opened; as it stands in the file if it cannot be resolved
-    Vector3 scale{1, 1, 1};           ///< of the vertices; a negative one mirrors
-    bool is_resolved = true;          ///< whether a package or model that it names was found
-    std::vector<Vector3> vertices_m;  ///< of a mesh that was read already; empty: `file` has them
+    std::string file;         ///< a path that can be opened; as it stands in the file if it cannot be resolved
+    Vector3 scale{1, 1, 1};   ///< of the vertices; a negative one mirrors
+    bool is_resolved = true;  ///< whether a package or model that it names was found
+    /// The vertices of its separate pieces in the file's unit, once it was read; empty: it was not, or cannot be.
+    std::vector<std::vector<Vector3>> pieces;
 };
 
 /// A shape of a link.

@@ -289,13 +289,15 @@ class MjcfReader {
         }
     }
 
-    /// A mesh with its vertices, which MuJoCo has scaled and moved to their centre.
+    /// A mesh with its vertices, which MuJoCo has scaled and moved to their centre: one piece, since MuJoCo itself
+    /// collides with the convex hull of all of it.
     [[nodiscard]] MeshReference compiled_mesh(int mesh) const {
         MeshReference compiled;
         compiled.file = name_of(mjOBJ_MESH, mesh, "mesh_");
+        std::vector<Vector3>& vertices_m = compiled.pieces.emplace_back();
         for (int i = 0; i < m_.mesh_vertnum[mesh]; ++i) {
             const float* v = m_.mesh_vert + 3 * static_cast<std::ptrdiff_t>(m_.mesh_vertadr[mesh] + i);
-            compiled.vertices_m.push_back({v[0], v[1], v[2]});
+            vertices_m.push_back({v[0], v[1], v[2]});
         }
         return compiled;
     }

@@ -43,7 +43,9 @@ constexpr const char* in_metres =
 void check_lengths(const TreeLink& link, Findings& findings) {
     for (const auto* shapes : {&link.collision, &link.visual}) {
         for (const TreeShape& shape : *shapes) {
-            const double extent_m = farthest_m(shape, {});
+            // A mesh in other units is told by its own message.
+            const double extent_m = std::holds_alternative<MeshReference>(shape.form) ? length_of(shape.pose.position_m)
+                                                                                      : farthest_m(shape, {});
             if (extent_m > longest_m) {
                 findings.error(shape.place, named(link) + " has a shape that extends to " + rounded(extent_m) +
                                                 " m from its origin" + in_metres);
@@ -148,7 +150,15 @@ double farthest_m(const TreeShape& shape, const Vector3& from_m) {
                         length_of(shape.pose.placed(capsule->to_m) - from_m)) +
                capsule->radius_m;
     }
-    return away_m;
+    double farthest = 0;
+    const auto& mesh = std::get<MeshReference>(shape.form);
+    for (const std::vector<Vector3>& piece : mesh.pieces) {
+        for (const Vector3& at : piece) {
+            const Vector3 scaled{mesh.scale[0] * at[0], mesh.scale[1] * at[1], mesh.scale[2] * at[2]};
+            farthest = std::max(farthest, length_of(shape.pose.placed(scaled) - from_m));
+        }
+    }
+    return farthest;
 }
 
 void check_links(const KinematicTree& tree, const ArmChain& chain, const ImportSettings& settings, Findings& findings) {

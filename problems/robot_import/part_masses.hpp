@@ -24,7 +24,7 @@ void check_links(const KinematicTree& tree, const ArmChain& chain, const ImportS
 /// @throws ProblemFileError for a part without mass
 std::vector<PartMass> part_masses(const KinematicTree& tree, const ArmChain& chain, Findings& findings);
 
-/// The farthest point of a shape from a place in the same frame [m]; that of a mesh is not known.
+/// The farthest point of a shape from a place in the same frame [m]; of a mesh 0 if it was not read.
 double farthest_m(const TreeShape& shape, const Vector3& from_m);
 
 }  // namespace downwash::robot_import

@@ -7,6 +7,7 @@
 #include "downwash/base/angles.hpp"
 #include "downwash/base/text.hpp"
 #include "downwash/robot_import/collision_bodies.hpp"
+#include "downwash/robot_import/mesh_solids.hpp"
 
 namespace downwash::robot_import {
 namespace {
@@ -255,6 +256,7 @@ class Builder {
 
 BuiltRobot built_robot(KinematicTree tree, int root, const ImportSettings& settings, Findings& findings) {
     name_rotors(tree, settings, findings);
+    read_meshes(tree);
     const ArmChain chain = arm_chain(tree, root, settings, findings);
     return Builder(tree, chain, settings, findings).built();
 }

@@ -91,6 +91,19 @@ double least_between(double low, double high, double tolerance, const Function& 
     return 0.5 * (low + high);
 }
 
+/// Says that the plan may have been flown more than once in the log.
+void remark_on_others(const std::vector<std::pair<double, double>>& tried, double duration_s, double best,
+                      LogAlignment& found) {
+    constexpr double as_good = 3, least_m = 0.05;
+    for (const auto& [offset_s, score] : tried) {
+        if (std::abs(offset_s - found.offset_s) >= 0.5 * duration_s && score < as_good * best + least_m) {
+            found.remarks.push_back("the log has another flight much like the plan: --time-offset " +
+                                    to_fixed_text(offset_s, 2) + " compares that one");
+            return;
+        }
+    }
+}
+
 /// Time and frame with the log's axes as they are.
 LogAlignment aligned(const FlightLog& log, const PlannedFlight& planned, const AlignmentOptions& options) {
     LogAlignment found;
@@ -103,17 +116,21 @@ LogAlignment aligned(const FlightLog& log, const PlannedFlight& planned, const A
     } else {
         const SpeedMatches matches = match_speeds(log, planned);
         double best = std::numeric_limits<double>::infinity();
+        std::vector<std::pair<double, double>> tried;  // offsets and scores
         for (const SpeedMatch& match : matches.best) {
             const double offset_s =
                 least_between(match.offset_s - 2 * matches.step_s, match.offset_s + 2 * matches.step_s, 1e-4,
                               [&](double each_s) { return score(each_s, 1); });
-            if (const double left = score(offset_s, 1); left < best) {
+            const double left = score(offset_s, 1);
+            tried.emplace_back(offset_s, left);
+            if (left < best) {
                 best = left;
                 found.offset_s = offset_s;
                 found.correlation = match.correlation;
             }
         }
         found.is_time_fitted = true;
+        remark_on_others(tried, duration_s, best, found);
         // A clock that drifts: about the middle of the plan, rate and offset do not disturb each other.
         constexpr double least_duration_s = 10, max_drift = 0.01, least_gain = 0.9, seen_s = 0.02;
         if (duration_s >= least_duration_s) {

@@ -117,6 +117,7 @@ class PlanInSpace final : public ComparedPlan {
     [[nodiscard]] std::vector<Vector3> fly_in_world(std::uint64_t seed, std::uint64_t index) const override {
         SpaceExecutionSettings settings;
         settings.world = draw_space_world(*model_.problem().uncertainty, model_.problem().robot, seed, index);
+        settings.measures_clearance = false;  // places are all that is asked for
         std::vector<Vector3> places;
         for (const SpaceFlightRow& row : model_.execute(plan_, settings).rows) {
             places.push_back(row.motion.position_m);

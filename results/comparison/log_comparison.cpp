@@ -116,6 +116,7 @@ class Comparison {
         result_.has_attitude = !log_.attitude.empty();
         result_.has_joints = !log_.joints_rad.empty() && log_.joints_rad.width >= plan_.joints();
         phases_ = phases_of(planned_);
+        place_jumps();
         track();
         track_angles();
         add_rows();
@@ -128,11 +129,27 @@ class Comparison {
     }
 
  private:
+    void place_jumps() {
+        const LogAlignment& alignment = result_.alignment;
+        for (LogJump jump : log_.jumps) {
+            jump.t_s = (jump.t_s - alignment.offset_s) / alignment.rate;
+            if (jump.t_s >= 0 && jump.t_s <= result_.duration_s) {
+                jump.step_m = alignment.turned(jump.step_m);
+                result_.jumps.push_back(std::move(jump));
+            }
+        }
+    }
+
+    [[nodiscard]] bool is_behind_jump(double t_s) const {
+        return std::ranges::any_of(
+            result_.jumps, [t_s](const LogJump& jump) { return t_s >= jump.t_s && t_s <= jump.t_s + after_jump_s; });
+    }
+
     /// Errors at every position of the log while the plan lasts.
     void track() {
         const PlannedMoments moments(planned_);
         const LogAlignment& alignment = result_.alignment;
-        ErrorSums tracking, from_planned;
+        ErrorSums tracking, from_planned, apart;
         std::array<ErrorSums, all_flight_phases.size()> by_phase;
         const LogSeries& places = log_.position_m;
         for (std::size_t i = 0; i < places.rows(); ++i) {
@@ -144,11 +161,15 @@ class Comparison {
             const Vector3 flown_m = alignment.placed({row[0], row[1], row[2]});
             const Vector3 error_m = flown_m - moments.between(&PlannedRow::reference_m, t_s);
             tracking.add(error_m, t_s);
+            if (!is_behind_jump(t_s)) {
+                apart.add(error_m, t_s);
+            }
             from_planned.add(flown_m - moments.between(&PlannedRow::position_m, t_s), t_s);
             by_phase[static_cast<std::size_t>(phases_[moments.row(t_s)])].add(error_m, t_s);
         }
         result_.tracking = tracking.figures();
         result_.from_planned = from_planned.figures();
+        result_.tracking_apart = apart.figures();
         for (const FlightPhase phase : all_flight_phases) {
             if (const auto ticks = std::ranges::count(phases_, phase); ticks > 0) {
                 result_.phases.push_back({phase, static_cast<double>(ticks) * planned_.tick_s,

@@ -78,13 +78,20 @@ struct ComparedRow {
     double thrust_n = 0, planned_thrust_n = 0, free_air_thrust_n = 0;  ///< the first NaN without commands
 };
 
+/// How long a vehicle comes back to its reference after a jump of the log, at most [s].
+inline constexpr double after_jump_s = 2;
+
 /// A log, held against a plan.
 struct LogComparison {
     LogAlignment alignment;
     std::string planned_outcome;
-    double duration_s = 0;             ///< of the planned flight
-    ErrorFigures tracking;             ///< from the reference
-    ErrorFigures from_planned;         ///< from the flight that simulation plans
+    double duration_s = 0;      ///< of the planned flight
+    ErrorFigures tracking;      ///< from the reference
+    ErrorFigures from_planned;  ///< from the flight that simulation plans
+    /// Jumps of the log while the plan lasts, with times of the plan and steps in the problem's axes. What they add to
+    /// errors is in all figures but `tracking_apart`.
+    std::vector<LogJump> jumps;
+    ErrorFigures tracking_apart;       ///< from the reference, without the after_jump_s behind each jump
     std::optional<AngleFigures> yaw;   ///< empty without an attitude in the log, and in a plane
     std::vector<AngleFigures> joints;  ///< one for each, if the log has them
     std::vector<PhaseFigures> phases;  ///< those that the plan has, in the order of FlightPhase

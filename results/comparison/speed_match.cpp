@@ -129,6 +129,12 @@ SpeedMatches match_speeds(const FlightLog& log, const PlannedFlight& planned) {
             break;
         }
     }
+    const double best_s = matches.best.front().offset_s;
+    const auto other = std::ranges::find_if(
+        sorted, [&](const SpeedMatch& match) { return std::abs(match.offset_s - best_s) >= 0.5 * plan_s; });
+    if (other != sorted.end()) {
+        matches.best.push_back(*other);
+    }
     return matches;
 }
 

@@ -17,8 +17,10 @@ struct SpeedMatch {
 };
 
 struct SpeedMatches {
-    double step_s = 0;             ///< between times that were tried
-    std::vector<SpeedMatch> best;  ///< the best ones that are apart from each other, five at most; one at least
+    double step_s = 0;  ///< between times that were tried
+    /// The best ones that are apart from each other, five at most; one at least. Then the best one that is half a plan
+    /// or more from the first, as of a second flight in the log, if there is one.
+    std::vector<SpeedMatch> best;
 };
 
 /// Where the horizontal and the vertical speed of a log are those of a plan's flight. Vertical speeds count without

@@ -169,6 +169,42 @@ TEST_CASE("A push aside shows in tracking, and as a time outside of what the wor
     CHECK(worst->excess_m > 0.2);
 }
 
+TEST_CASE("A jump of the log is told at its time of the plan, and tracking without what follows it") {
+    LoggedFlight flight = girder_flight();
+    for (LoggedMoment& moment : flight) {
+        moment.position_m[0] += moment.t_s >= 5 && moment.t_s < 6 ? 0.5 : 0;
+    }
+    ComparisonOptions options;
+    options.alignment.is_in_world = true;
+    const LogComparison comparison =
+        compare(read(ulog_of(in_frame(flight, {0, {}, 1, 1}), 20), "flight.ulg"), compared_girder(), options);
+    REQUIRE(comparison.jumps.size() == 2);
+    CHECK(comparison.jumps[0].t_s == Approx(5).margin(0.1));
+    CHECK(comparison.jumps[0].step_m[0] == Approx(0.5).margin(0.05));
+    CHECK(comparison.jumps[1].step_m[0] == Approx(-0.5).margin(0.05));
+    CHECK(comparison.tracking.max_m[3] > 0.4);
+    CHECK(comparison.tracking_apart.max_m[3] < 0.2);
+    CHECK(comparison.tracking_apart.samples < comparison.tracking.samples);
+}
+
+TEST_CASE("A log with the flight in it twice says where the other one is") {
+    LoggedFlight flight = girder_flight();
+    const std::size_t once = flight.size();
+    const double again_s = flight.back().t_s + 40;
+    for (std::size_t i = 0; i < once; ++i) {
+        LoggedMoment moment = flight[i];
+        moment.t_s += again_s;
+        moment.position_m[2] += 0.02 * std::sin(moment.t_s);
+        flight.push_back(moment);
+    }
+    const LogComparison comparison =
+        compare(read(ulog_of(in_frame(flight, {0, {}, 1, 1}), 20), "flight.ulg"), compared_girder());
+    CHECK(comparison.alignment.offset_s == Approx(0).margin(0.02));
+    REQUIRE(comparison.alignment.remarks.size() == 1);
+    CHECK(comparison.alignment.remarks[0].find("another flight much like the plan: --time-offset ") !=
+          std::string::npos);
+}
+
 TEST_CASE("The envelope of worlds does not depend on the number of threads") {
     const EnvelopeWorlds one{1, 1, 2, 1, {}}, two{1, 1, 2, 2, {}};
     const WorldEnvelope a = world_envelope(compared_girder(), girder_plan().tick_s, one);

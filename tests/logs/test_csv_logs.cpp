@@ -147,3 +147,49 @@ TEST_CASE("The unit of times follows from the step between rows") {
         CHECK(log.remarks[0].find(name) != std::string::npos);
     }
 }
+
+TEST_CASE("The columns of a table decide whether PX4 wrote it, not the name of its file") {
+    const FlightLog own = WrittenLog("t,x,y,z\n0,1,2,3\n0.1,1,2,3\n", "vehicle_track.csv").read();
+    CHECK(own.recorded_axes == LogAxes::up);
+    CHECK(own.axes_source == AxesSource::guessed);
+    CHECK(own.duration_s == Approx(0.1));
+    const FlightLog px4 =
+        WrittenLog("timestamp,x,y,z,xy_valid,z_valid\n0,1,2,-3,1,1\n100000,1,2,-3,1,1\n", "mine.csv").read();
+    CHECK(px4.recorded_axes == LogAxes::down);
+    CHECK(px4.axes_source == AxesSource::format);
+    CHECK(px4.duration_s == Approx(0.1));
+    CHECK(px4.remarks.empty());
+    const FlightLog named =
+        WrittenLog("timestamp,x,y,z\n0,1,2,-3\n100000,1,2,-3\n", "a_vehicle_local_position_0.csv").read();
+    CHECK(named.recorded_axes == LogAxes::down);
+    REQUIRE(named.remarks.size() == 1);
+    CHECK(named.remarks[0].find("--axes says otherwise") != std::string::npos);
+    const FlightLog odometry =
+        WrittenLog("timestamp,position[0],position[1],position[2],q[0],q[1],q[2],q[3]\n0,1,2,-3,1,0,0,0\n", "o.csv")
+            .read();
+    CHECK(odometry.position_m.row(0)[2] == 3);
+    CHECK(odometry.setpoint_m.empty());
+}
+
+TEST_CASE("Units and directions in the names of columns count") {
+    const FlightLog log = WrittenLog(
+                              "Time (ms);Pos X [mm];Pos Y [mm];Pos Z [mm];Roll (deg);Pitch (deg);Yaw (deg);wx (deg/s);"
+                              "wy (deg/s);wz (deg/s);joint1 (deg)\n"
+                              "0;1500,5;2000;3000;0;0;1;180;0;0;90\n20;1500,5;2000;3000;0;0;1;180;0;0;90\n",
+                              "flight.csv")
+                              .read();
+    CHECK(log.duration_s == Approx(0.02));
+    CHECK(log.position_m.row(0)[0] == Approx(1.5005));
+    CHECK(log.attitude.row(0)[3] == Approx(std::sin(0.5 / 57.29577951308232)));
+    CHECK(log.body_rates_rad_s.row(0)[0] == Approx(3.141592653589793));
+    CHECK(log.joints_rad.row(0)[0] == Approx(1.5707963267948966));
+    CHECK(log.remarks.empty());
+    const FlightLog north = WrittenLog("TimeUS,PN,PE,PD\n0,1,2,-3\n100000,1,2,-3\n", "xkf1.csv").read();
+    CHECK(north.axes_source == AxesSource::format);
+    CHECK(north.position_m.row(0)[1] == -2);
+    CHECK(north.position_m.row(0)[2] == 3);
+    const FlightLog east = WrittenLog("t_s,north_m,east_m,up_m\n0,1,2,3\n1,1,2,3\n", "track.csv").read();
+    CHECK(east.position_m.row(0)[0] == 2);
+    CHECK(east.position_m.row(0)[2] == 3);
+    CHECK(east.axes_source == AxesSource::format);
+}

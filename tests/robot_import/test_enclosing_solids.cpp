@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -172,4 +173,78 @@ TEST_CASE(
         imported.warnings[0].message,
         Contains("has the mesh '") && Contains("battery.stl': taken is the cylinder around it, which stands out from "
                                                "its convex hull by up to 0.0"));
+}
+
+namespace {
+
+/// Boxes of an STL in ASCII, two triangles for each of their faces.
+std::string stl_of(const std::vector<std::pair<Vector3, Vector3>>& boxes) {
+    constexpr int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    std::string text = "solid boxes\n";
+    for (const auto& [low, high] : boxes) {
+        const auto vertex = [&](int i) {
+            return "vertex " + std::to_string(i & 1 ? high[0] : low[0]) + " " +
+                   std::to_string(i & 2 ? high[1] : low[1]) + " " + std::to_string(i & 4 ? high[2] : low[2]) + "\n";
+        };
+        for (const auto& face : faces) {
+            for (const auto& [a, b] : {std::pair{1, 2}, std::pair{2, 3}}) {
+                text += "facet normal 0 0 0\nouter loop\n" + vertex(face[0]) + vertex(face[a]) + vertex(face[b]) +
+                        "endloop\nendfacet\n";
+            }
+        }
+    }
+    return text + "endsolid boxes\n";
+}
+
+/// The robot with the battery as such an STL in millimetres.
+ImportedRobot with_battery(const std::vector<std::pair<Vector3, Vector3>>& boxes, const TextEdits& edits = {}) {
+    const ScratchFolder folder;
+    write_text(folder / "battery.stl", stl_of(boxes));
+    TextEdits all = {
+        {"<box size=\"0.16 0.06 0.05\"/>", "<mesh filename=\"battery.stl\" scale=\"0.001 0.001 0.001\"/>"}};
+    all.insert(all.end(), edits.begin(), edits.end());
+    write_text(folder / "robot.urdf", edited(text_of(DOWNWASH_MODELS "/hexa_arm2.urdf"), all));
+    return import_robot(folder / "robot.urdf");
+}
+
+}  // namespace
+
+TEST_CASE("each separate piece of a mesh becomes a solid, and the space between them stays free") {
+    const std::size_t alone = with_battery({{{-80, -30, -25}, {80, 30, 25}}}).robot.body.size();
+    const ImportedRobot apart =
+        with_battery({{{-80, -30, -25}, {-60, 30, 25}}, {{60, -30, -25}, {80, 30, 25}}, {{-5, -5, -25}, {5, 5, 25}}});
+    REQUIRE(apart.robot.body.size() == alone + 2);
+    double volume = 0;
+    for (std::size_t i = 1; i <= 3; ++i) {
+        volume += volume_m3(apart.robot.body[i].shape);
+    }
+    CHECK(volume == Approx(2 * 0.02 * 0.06 * 0.05 + 0.01 * 0.01 * 0.05).epsilon(1e-6));
+    REQUIRE(apart.warnings.size() == 1);
+    CHECK_THAT(apart.warnings[0].message, Contains("of 3 separate pieces: taken are 3 solids around them"));
+}
+
+TEST_CASE("pieces of a mesh within others and beside each other share a solid, and there are at most eight") {
+    const std::size_t alone = with_battery({{{-80, -30, -25}, {80, 30, 25}}}).robot.body.size();
+    CHECK(with_battery({{{-80, -30, -25}, {80, 30, 25}}, {{0, 0, 0}, {3, 3, 3}}, {{80.5, -30, -25}, {100, 30, 25}}})
+              .robot.body.size() == alone);
+    std::vector<std::pair<Vector3, Vector3>> many;
+    for (int i = 0; i < 300; ++i) {
+        const double x = 40.0 * i;
+        many.push_back({{x, 0, 0}, {x + 1, 10, 10}});
+    }
+    CHECK(with_battery(many).robot.body.size() == alone + 7);
+}
+
+TEST_CASE("an inertia that no body within its mesh can have is a warning") {
+    // sqrt(I / m) of 0.0529 m fits in a mesh that ends 0.089 m from its middle, sqrt(0.05 / 0.5) m does not.
+    const std::vector<std::pair<Vector3, Vector3>> mesh{{{-80, -30, -25}, {80, 30, 25}}};
+    const auto warns = [](const ImportedRobot& imported) {
+        return std::ranges::any_of(imported.warnings, [](const auto& warning) {
+            return warning.message.find("has more inertia than its whole mass at the farthest point") !=
+                   std::string::npos;
+        });
+    };
+    CHECK(!warns(with_battery(mesh)));
+    CHECK(warns(with_battery(mesh, {{"ixx=\"0.0004\" ixy=\"0\" ixz=\"0\" iyy=\"0.0013\" iyz=\"0\" izz=\"0.0014\"",
+                                     "ixx=\"0.04\" ixy=\"0\" ixz=\"0\" iyy=\"0.05\" iyz=\"0\" izz=\"0.05\""}})));
 }

@@ -38,15 +38,18 @@ class Comparison(page_test.BrowserTest):
                          [f"{axis} from the reference" for axis in "xyz"])
         self.assertEqual(len(self.every("#places .band", "e.getAttribute('d').length")), 3)
         self.assertEqual(len(self.every("#places .outside", "1")), 1)
+        self.assertEqual(len(self.every(".jump", "1")), 4)
         flown = self.every("#places .line.series-1", "e.getAttribute('d').split('M').length - 1")
         self.assertEqual(flown, [2, 2, 2])
         self.show("bare")
         self.assertEqual(len(self.every("#places .plot-title", "1")), 2)
+        self.assertEqual(len(self.every(".jump, .jumps", "1")), 0)
 
     def test_the_verdict_has_the_figures_and_foreign_text_stays_text(self):
         self.show("plain")
         text = self.one(".verdict", "e.textContent.replaceAll('\\u00a0', ' ')")
-        for part in ("81.37 s of the log", "correlation of speeds 0.987", "23 mm", "0.184 m", "3.1%", "95.0% of the plan"):
+        for part in ("81.37 s of the log", "correlation of speeds 0.987", "23 mm", "0.184 m", "3.1%", "95.0% of the plan",
+                     "the log jumps", "position by 500 mm (vehicle_local_position.xy_reset_counter)"):
             self.assertIn(part, text)
         self.show("bare")
         self.assertEqual(self.one("h1", "e.textContent"), HOSTILE)

@@ -25,6 +25,9 @@ def plain_report():
         "alignment": {"offset_s": 81.37, "rate": 1, "is_time_fitted": True, "is_rate_fitted": False, "correlation": 0.987,
                       "yaw_rad": 0.5, "shift_m": [1, 2, 3], "is_frame_fitted": True, "residual_m": 0.018, "covered": 0.95},
         "duration_s": 20.0, "planned_outcome": "ok", "tracking": figures(1), "from_planned_flight": figures(0.8),
+        "tracking_apart_from_jumps": figures(0.5),
+        "jumps": [{"at_s": 12.0, "what": "position", "step_m": [0.3, 0.4, 0.0], "turn_rad": 0.0,
+                   "source": "vehicle_local_position.xy_reset_counter"}],
         "phases": [{"phase": phase, "duration_s": 10.0, "min_clearance_m": 0.3, **figures(1)} for phase in ("transit", "hover")],
         "clearance": {"flown": {"min_m": 0.184, "at_s": 8.26, "obstacle": "bottom_flange"},
                       "planned": {"min_m": 0.2, "at_s": 8.2, "obstacle": "bottom_flange"}, "safety_margin_m": 0.05,
@@ -50,7 +53,7 @@ def bare_report():
     findings, series = report["findings"], report["series"]
     findings["log"]["files"] = [HOSTILE]
     findings["remarks"] = [HOSTILE]
-    findings.update(thrust=None, envelope=None)
+    findings.update(thrust=None, envelope=None, jumps=[], tracking_apart_from_jumps=None)
     findings["clearance"]["flown"] = findings["clearance"]["planned"] = {"min_m": None, "at_s": None, "obstacle": None}
     for name in ("thrust_n", "planned_thrust_n", "free_air_thrust_n", "low_m", "high_m"):
         del series[name]

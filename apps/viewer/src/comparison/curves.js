@@ -38,9 +38,9 @@ function domain_of(lists, from_zero) {
 /**
  * @param {{name: string, values: Float64Array, style: string}[]} lines
  * @param {{low: Float64Array, high: Float64Array}} [band]
- * @param {{outside?: {begin_s: number, end_s: number}[], limit?: {name: string, value: number}, from_zero?: boolean}} more
+ * @param {{outside?: {begin_s: number, end_s: number}[], jumps?: {at_s: number}[], limit?: {name: string, value: number}, from_zero?: boolean}} more
  */
-function make_curves(title, unit, t_s, lines, band, {outside = [], limit, from_zero} = {}) {
+function make_curves(title, unit, t_s, lines, band, {outside = [], jumps = [], limit, from_zero} = {}) {
     const shown = band ? [...lines.map(({values}) => values), band.low, band.high] : lines.map(({values}) => values);
     const y = domain_of(shown, from_zero);
     return make_panel({}, title, () => y === null ? "The log has nothing of it." : {
@@ -59,6 +59,7 @@ function make_curves(title, unit, t_s, lines, band, {outside = [], limit, from_z
                             y: frame.top,
                             height: frame.bottom - frame.top
                         })),
+            jumps.map(({at_s}) => s("path", {class: "jump", d: `M${frame.x(at_s)} ${frame.top}V${frame.bottom}`})),
             band ? s("path", {class: "band", d: band_of(t_s, band.low, band.high, frame)}) : [],
             limit && limit.value >= y[0] && limit.value <= y[1] ?
                 [
@@ -80,6 +81,7 @@ function make_key(lines, others) {
                                         name)));
 }
 
+const jump_key = ["the log jumps", "jump-key"];
 const key_lines = [["flown", "series-1"], ["planned flight", "series-0"]];
 
 /** How far the vehicle was from its reference, axis by axis, with the envelope of the worlds. */
@@ -95,20 +97,23 @@ export function make_places({series, findings}) {
                 {name: "planned flight", values: off(series.planned_m[axis]), style: "series-0"},
                 {name: "flown", values: off(series.flown_m[axis]), style: "series-1"}
             ],
-            band, {outside});
+            band, {outside, jumps: findings.jumps});
     });
     const note = findings.envelope ?
         `The band spans where the vehicle is in ${findings.envelope.worlds} worlds of the plan's uncertainty; red marks ` +
             "times at which the flown vehicle is outside of it, most of all along that axis." :
         "Along the axes of the problem.";
-    const areas = findings.envelope ? [["worlds", "band-key"], ["outside", "outside-key"]] : [];
+    const areas = [
+        ...(findings.envelope ? [["worlds", "band-key"], ["outside", "outside-key"]] : []),
+        ...(findings.jumps.length > 0 ? [jump_key] : [])
+    ];
     const figure = make_figure("places", "Tracking, axis by axis", note, panels, make_key(key_lines, areas));
     figure.classList.add("wide");
     return figure;
 }
 
 /** How far it was from its reference. */
-export function make_errors({series}) {
+export function make_errors({series, findings}) {
     const distances = (places_m) => series.t_s.map((_, i) => Math.hypot(
         ...axes.map((_, axis) => places_m[axis][i] - series.reference_m[axis][i])));
     return make_figure(
@@ -119,8 +124,8 @@ export function make_errors({series}) {
                          {name: "planned flight", values: distances(series.planned_m), style: "series-0"},
                          {name: "flown", values: distances(series.flown_m), style: "series-1"}
                      ],
-                     undefined, {from_zero: true})],
-        make_key(key_lines, []));
+                     undefined, {from_zero: true, jumps: findings.jumps})],
+        make_key(key_lines, findings.jumps.length > 0 ? [jump_key] : []));
 }
 
 /** null without obstacles. */

@@ -44,6 +44,25 @@ function figures_of({tracking, clearance, envelope, thrust}) {
     return list;
 }
 
+/** What the log's jumps are, and what they add to the errors; null without any. */
+function make_jumps({jumps, tracking_apart_from_jumps: apart}) {
+    if (jumps.length === 0) {
+        return null;
+    }
+    const by = ({step_m, turn_rad}) => {
+        const step = Math.hypot(...step_m);
+        return step > 0 ? ` by ${millimetres(step)}` : turn_rad === 0 ? "" : ` by ${degrees(turn_rad)}`;
+    };
+    return h(
+        "div", {class: "jumps"},
+        h("p", null,
+          "The estimator was reset in flight: the log jumps, not the vehicle. All errors on this page contain that. Without two " +
+              `seconds behind each jump, the vehicle was ${millimetres(apart.rms_m.distance)} from its reference, ${
+                  millimetres(apart.max_m.distance)} at most.`),
+        h("ul", null,
+          jumps.map((jump) => h("li", null, `${seconds(jump.at_s)}: ${jump.what}${by(jump)} (`, foreign(jump.source), ")"))));
+}
+
 export function make_verdict({findings}) {
     const {alignment, log, remarks} = findings;
     const lines = [
@@ -59,7 +78,7 @@ export function make_verdict({findings}) {
         "section", {class: "verdict", "aria-labelledby": "verdict-title"},
         h("div", {class: "verdict-text"},
           h("div", null, h("h2", {id: "verdict-title"}, "The flight beside its plan"),
-            lines.map((text) => h("p", null, text)),
+            lines.map((text) => h("p", null, text)), make_jumps(findings),
             remarks.length > 0 ? h("ul", {class: "muted"}, remarks.map((text) => h("li", null, foreign(text)))) : null)),
         h("dl", {class: "figures"},
           figures_of(findings).map(
