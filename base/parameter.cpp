@@ -183,7 +183,10 @@ std::optional<std::string> spread_error(const ParameterInfo& info, const Spread&
         const auto error = number_error(info, spread.low);
         return error ? error : number_error(info, spread.high);
     }
-    for (const double end : {-3 * spread.high, 3 * spread.high}) {
+    if (spread.low != 0 && std::find(info.elements.begin(), info.elements.end(), "range") == info.elements.end()) {
+        return "has a mean, though only its sd has a meaning: expected " + expectation(info);
+    }
+    for (const double end : {spread.low - 3 * spread.high, spread.low + 3 * spread.high}) {
         if (info.range.low.value_or(0) < 0 && number_error(info, end)) {
             return "has an sd so large that 3 of it leave the range: expected " + expectation(info);
         }

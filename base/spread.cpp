@@ -12,7 +12,8 @@ double Spread::difference(double p, double nominal, bool range_is_of_number) con
             constexpr double cut = 3;
             constexpr double below_cut = 0.0013498980316300946;  // the probability of less than -3
             const double x = normal_quantile(below_cut + std::clamp(p, 0.0, 1.0) * (1 - 2 * below_cut));
-            return high * std::clamp(x, -cut, cut);
+            const double deviation = high * std::clamp(x, -cut, cut);
+            return low == 0 ? deviation : low + deviation;
         }
         case Form::range:
             return low + p * (high - low) - (range_is_of_number ? nominal : 0);

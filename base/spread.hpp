@@ -11,8 +11,9 @@ namespace downwash {
 struct Spread {
     /// What `low` and `high` are.
     enum class Form : std::uint8_t {
-        exact,   ///< The number is nominal.
-        sd,      ///< Normal around the nominal value with the standard deviation `high`, cut at 3 of them.
+        exact,  ///< The number is nominal.
+        /// Normal with the standard deviation `high`, cut at 3 of them; its mean is the nominal value plus `low`.
+        sd,
         range,   ///< Uniform from low to high.
         factor,  ///< Uniform from low to high times the nominal value.
     };
@@ -20,7 +21,7 @@ struct Spread {
     double low = 0;
     double high = 0;
 
-    [[nodiscard]] static constexpr Spread of_sd(double sd) noexcept { return {Form::sd, 0, sd}; }
+    [[nodiscard]] static constexpr Spread of_sd(double sd, double mean = 0) noexcept { return {Form::sd, mean, sd}; }
     [[nodiscard]] static constexpr Spread over(double low, double high) noexcept { return {Form::range, low, high}; }
     [[nodiscard]] static constexpr Spread of_factor(double low, double high) noexcept {
         return {Form::factor, low, high};
@@ -34,14 +35,15 @@ struct Spread {
     friend constexpr bool operator==(const Spread&, const Spread&) = default;
 };
 
-/// A spread as files write it: "0", "{sd: 0.15}", "{range: [-0.1, 0.2]}".
+/// A spread as files write it: "0", "{sd: 0.15}", "{mean: 0.1, sd: 0.15}", "{range: [-0.1, 0.2]}".
 /// @param number_text (double) -> std::string
 template <class NumberText>
 std::string spread_text(const Spread& spread, const NumberText& number_text) {
     const auto ends = [&] { return "[" + number_text(spread.low) + ", " + number_text(spread.high) + "]"; };
     switch (spread.form) {
         case Spread::Form::sd:
-            return "{sd: " + number_text(spread.high) + "}";
+            return (spread.low != 0 ? "{mean: " + number_text(spread.low) + ", sd: " : "{sd: ") +
+                   number_text(spread.high) + "}";
         case Spread::Form::range:
             return "{range: " + ends() + "}";
         case Spread::Form::factor:

@@ -94,6 +94,10 @@ void know_better(Problem& problem) {
         }
         Spread& spread = (*problem.uncertainty).*key.spread;
         double middle = 0;
+        if (spread.form == Spread::Form::sd) {
+            spread.high *= 0.5;
+            continue;
+        }
         if (spread.form == Spread::Form::factor) {
             middle = 1;
         } else if (spread.form == Spread::Form::range && key.nominal != nullptr) {

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -43,7 +44,7 @@ Json json_of(const Value& value) {
             } else if constexpr (std::is_same_v<std::decay_t<decltype(held)>, Spread>) {
                 switch (held.form) {
                     case Spread::Form::sd:
-                        return {{"sd", held.high}};
+                        return held.low != 0 ? Json{{"mean", held.low}, {"sd", held.high}} : Json{{"sd", held.high}};
                     case Spread::Form::range:
                         return {{"range", {held.low, held.high}}};
                     case Spread::Form::factor:
@@ -153,9 +154,13 @@ class SchemaWriter {
         for (const std::string_view name : info.elements) {
             const Json number{{"type", "number"}};
             const Json value = name == "sd" ? Json{{"type", "number"}, {"minimum", 0}} : array_schema(number, 2);
+            Json properties{{std::string(name), value}};
+            if (name == "sd" && std::ranges::find(info.elements, "range") != info.elements.end()) {
+                properties["mean"] = number;
+            }
             forms.push_back({{"type", "object"},
                              {"additionalProperties", false},
-                             {"properties", {{std::string(name), value}}},
+                             {"properties", std::move(properties)},
                              {"required", {name}}});
         }
         return any_of(std::move(forms));

@@ -124,9 +124,27 @@ std::vector<Vector3> read_matrix(const ParameterInfo& info, const YamlNode& node
     return rows;
 }
 
+/// "{mean: m, sd: s}", in either order; empty if the node is something else.
+std::optional<Spread> read_normal(const ParameterInfo& info, const YamlNode& node) {
+    if (node.kind != YamlNode::Kind::map || node.entries.size() != 2) {
+        return std::nullopt;
+    }
+    std::optional<double> mean, sd;
+    for (const auto& [key, given] : node.entries) {
+        if (key->kind != YamlNode::Kind::scalar || (key->text != "mean" && key->text != "sd")) {
+            return std::nullopt;
+        }
+        (key->text == "mean" ? mean : sd) = read_number(info, *given);
+    }
+    return mean && sd ? std::optional(Spread::of_sd(*sd, *mean)) : std::nullopt;
+}
+
 Spread read_spread(const ParameterInfo& info, const YamlNode& node) {
     if (node.kind == YamlNode::Kind::scalar && !node.is_quoted && parse_number<double>(node.text) == 0.0) {
         return {};
+    }
+    if (const auto normal = read_normal(info, node)) {
+        return *normal;
     }
     if (node.kind != YamlNode::Kind::map || node.entries.size() != 1 ||
         node.entries[0].first->kind != YamlNode::Kind::scalar) {
