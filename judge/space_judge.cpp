@@ -60,6 +60,13 @@ bool settles(SpaceLoop& loop, const SpaceCoordinates& start, double tick_s) {
     return true;
 }
 
+SpaceJudgedRecord record_of(const SpaceLoop& loop) {
+    SpaceJudgedRecord record{motion_of(loop.seen()), loop.commands().thrust_n, {}};
+    const Eigen::VectorXd& joints_nm = loop.commands().joints_nm;
+    record.joint_torque_nm.assign(joints_nm.data(), joints_nm.data() + joints_nm.size());
+    return record;
+}
+
 /// A stay of a plan, and where it and what followed are among the rows.
 struct FlownStay {
     SpaceStay stay;
@@ -169,6 +176,9 @@ SpaceJudgedFlight SpaceJudge::fly(const SpacePlan& plan, const SpaceFlightCondit
     auto stay = stays.begin();
     for (std::int64_t tick = 0; tick < end && goes_on; ++tick) {
         loop.next(flown++, now);
+        if (conditions.records) {
+            flight.records.push_back(record_of(loop));
+        }
         now = reference_at(plan, tick + 1);
         goes_on = umpire.sees(loop, now);
         if (!goes_on || stay == stays.end() || stay->stay.end != tick + 1) {
@@ -184,6 +194,9 @@ SpaceJudgedFlight SpaceJudge::fly(const SpacePlan& plan, const SpaceFlightCondit
             while (goes_on && !course.is_over()) {
                 const bool is_holding = course.is_holding();
                 loop.next(flown++, lead.reference(), course.is_at_surface(), lead.push());
+                if (conditions.records) {
+                    flight.records.push_back(record_of(loop));
+                }
                 course.next(loop.state().contact_n);
                 goes_on = umpire.sees_touch(loop, lead.reference(), surface, is_holding);
             }

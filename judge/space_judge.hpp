@@ -28,6 +28,7 @@ struct SpaceFlightConditions {
     std::optional<double> energy_budget_j;
     std::vector<SpaceGoal> goals;  ///< that the flight has to meet, one after the other; none: it is `ok` at its end
     bool in_any_order = false;     ///< in the order in which the plan comes to them
+    bool records = false;          ///< whether the flight has what the vehicle itself could record
 };
 
 /// Flies plans of a robot in space and says how they end. It shares parameters, shapes and the formulas of surface

@@ -30,6 +30,13 @@ struct SpaceJudgedRow {
     double energy_j = 0;
 };
 
+/// What the vehicle itself could record of a control tick.
+struct SpaceJudgedRecord {
+    SpaceJudgedMotion seen;               ///< by its controller: late, with bias and noise
+    std::vector<double> rotor_command_n;  ///< free-air thrust of each rotor, held until the next tick
+    std::vector<double> joint_torque_nm;  ///< of each joint, held until the next tick
+};
+
 /// A touch in flight.
 struct SpaceJudgedTouch {
     double force_n = 0;         ///< mean normal force over the hold; 0 if it was not held
@@ -57,6 +64,8 @@ struct SpaceJudgedFlight {
     double max_tracking_error_m = 0;
     std::vector<SpaceJudgedGoal> goals;  ///< one for each that was asked for
     std::vector<SpaceJudgedRow> rows;    ///< one per control tick
+    /// One per control tick where the conditions ask for them; the last row, in which nothing is commanded, has none.
+    std::vector<SpaceJudgedRecord> records;
 };
 
 }  // namespace downwash::judge

@@ -24,6 +24,7 @@ SpaceLoop::SpaceLoop(const SpaceControl& control, const SpaceSurroundings& nomin
              control.resting_thrust_n()},
       before_(state_),
       now_(start),
+      seen_(start),
       memory_(control.at_start(start)),
       sensors_(world, robot, start),
       gusts_(world, control.tick_s()),
@@ -44,8 +45,8 @@ void SpaceLoop::next(std::int64_t tick, const SpacePoint& reference, bool is_at_
     const SpaceCoordinates from = now_;
     const SpaceControlMemory memory_before = memory_;
     before_ = state_;
-    commands_ =
-        control_.command(sensors_.seen(now_, tape), state_.thrust_n, reference, nominal_surfaces_, memory_, push);
+    seen_ = sensors_.seen(now_, tape);
+    commands_ = control_.command(seen_, state_.thrust_n, reference, nominal_surfaces_, memory_, push);
     wind_ = gusts_.wind();
     state_ = plant_->after(state_, commands_, wind_, control_.tick_s());
     sensors_.remember(now_);

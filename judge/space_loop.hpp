@@ -23,6 +23,8 @@ class SpaceLoop {
     [[nodiscard]] const SpacePlant& plant() const noexcept { return *plant_; }
     /// The motion of the point that the robot file calls the centre of mass; joints count on over whole turns.
     [[nodiscard]] const SpaceCoordinates& coordinates() const noexcept { return now_; }
+    /// What the controller saw in the last tick.
+    [[nodiscard]] const SpaceCoordinates& seen() const noexcept { return seen_; }
     /// What the controller gave in the last tick.
     [[nodiscard]] const SpaceCommands& commands() const noexcept { return commands_; }
 
@@ -42,7 +44,7 @@ class SpaceLoop {
     SpaceWorld world_;
     const SpaceRobot& robot_;
     SpacePlantState state_, before_;
-    SpaceCoordinates now_;
+    SpaceCoordinates now_, seen_;
     SpaceControlMemory memory_;
     SpaceSensors sensors_;
     SpaceGusts gusts_;

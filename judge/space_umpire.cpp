@@ -34,6 +34,17 @@ Vector3 vector3_of(const Eigen::Vector3d& v) {
 
 }  // namespace
 
+SpaceJudgedMotion motion_of(const SpaceCoordinates& at) {
+    SpaceJudgedMotion motion;
+    motion.position_m = vector3_of(at.position_m);
+    motion.attitude = {at.attitude.w(), at.attitude.x(), at.attitude.y(), at.attitude.z()};
+    std::copy_n(at.joints_rad.data(), at.joints_rad.size(), motion.joints_rad.begin());
+    motion.velocity_m_s = vector3_of(at.velocity_m_s);
+    motion.body_rates_rad_s = vector3_of(at.body_rate_rad_s);
+    std::copy_n(at.joint_rates_rad_s.data(), at.joint_rates_rad_s.size(), motion.joint_rates_rad_s.begin());
+    return motion;
+}
+
 bool SpaceStability::is_stable(const SpaceCoordinates& at, const SpacePoint& reference) {
     if (!is_usable(at)) {
         return false;
@@ -181,12 +192,7 @@ void SpaceUmpire::add_row(const SpaceLoop& loop, const SpacePoint& reference, do
     const SpaceCoordinates& at = loop.coordinates();
     SpaceJudgedRow row;
     row.t_s = static_cast<double>(flight_.rows.size()) * tick_s_;
-    row.motion.position_m = vector3_of(at.position_m);
-    row.motion.attitude = {at.attitude.w(), at.attitude.x(), at.attitude.y(), at.attitude.z()};
-    std::copy_n(at.joints_rad.data(), at.joints_rad.size(), row.motion.joints_rad.begin());
-    row.motion.velocity_m_s = vector3_of(at.velocity_m_s);
-    row.motion.body_rates_rad_s = vector3_of(at.body_rate_rad_s);
-    std::copy_n(at.joint_rates_rad_s.data(), at.joint_rates_rad_s.size(), row.motion.joint_rates_rad_s.begin());
+    row.motion = motion_of(at);
     row.reference = reference;
     row.clearance_m = clearance_m;
     row.energy_j = loop.state().energy_j;

@@ -9,6 +9,9 @@
 
 namespace downwash::judge {
 
+/// The motion of a row.
+[[nodiscard]] SpaceJudgedMotion motion_of(const SpaceCoordinates& at);
+
 /// Whether a vehicle is lost. One that starts tilted may recover; one that has been upright may not tilt too far again.
 class SpaceStability {
  public:
