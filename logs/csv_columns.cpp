@@ -59,6 +59,7 @@ struct NumberedSignal {
 constexpr std::array numbered_signals{
     NumberedSignal{"joint_", {"joint_{}_rad", "joint_{}_deg", "joint_{}", "joint{}", "position{0}"}},
     NumberedSignal{"joint_rate_", {"joint_{}_rate_rad_s", "joint_{}_rate", "joint_rate_{}", "joint{}_rate"}},
+    NumberedSignal{"joint_torque_", {"joint_{}_torque_nm", "joint_torque_{}", "joint{}_torque", "effort{0}"}},
     NumberedSignal{"rotor_",
                    {"rotor_{}_cmd_n", "control[{0}]", "output[{0}]", "rotor_{}", "rotor{}", "motor_{}", "motor{}"}},
 };

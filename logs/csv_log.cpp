@@ -204,6 +204,7 @@ class CsvLog {
         add_group(log_.setpoint_m, {"set_x", "set_y", "set_z"}, !is_planar);
         add_numbered(log_.joints_rad, "joint_");
         add_numbered(log_.joint_rates_rad_s, "joint_rate_");
+        add_numbered(log_.joint_torques_nm, "joint_torque_");
         add_numbered(log_.rotor_commands, "rotor_");
     }
 

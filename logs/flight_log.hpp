@@ -81,6 +81,7 @@ struct FlightLog {
     LogSeries specific_force_m_s2;  ///< 3: what an accelerometer measures, in body axes; +9.8 upward at rest
     LogSeries joints_rad;           ///< one for each joint of the arm
     LogSeries joint_rates_rad_s;    ///< the same
+    LogSeries joint_torques_nm;     ///< the same, of the motors
     LogSeries rotor_commands;       ///< one for each rotor, in the order of the log
     RotorUnit rotor_unit = RotorUnit::newton;
     LogSeries setpoint_m;  ///< 3: position that the autopilot was told to be at, in the world
@@ -103,6 +104,7 @@ inline constexpr std::array named_series{
     NamedSeries{"specific force", &FlightLog::specific_force_m_s2},
     NamedSeries{"joints", &FlightLog::joints_rad},
     NamedSeries{"joint rates", &FlightLog::joint_rates_rad_s},
+    NamedSeries{"joint torques", &FlightLog::joint_torques_nm},
     NamedSeries{"rotor commands", &FlightLog::rotor_commands},
     NamedSeries{"set-points", &FlightLog::setpoint_m},
 };
