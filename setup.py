@@ -18,7 +18,7 @@ from setuptools.command.build_ext import build_ext
 
 ROOT = pathlib.Path(__file__).resolve().parent
 # What the package does not use.
-LEFT_OUT = ("CLI", "CAMPAIGNS", "EXPORTS", "FITTING", "ROBOT_IMPORT", "TESTS", "BENCH")
+LEFT_OUT = ("CLI", "CAMPAIGNS", "EXPORTS", "FITTING", "IDENTIFICATION", "ROBOT_IMPORT", "TESTS", "BENCH")
 
 
 def cache_of(build: pathlib.Path) -> dict[str, str]:

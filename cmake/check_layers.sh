@@ -19,6 +19,7 @@ aeromap:               base scene effects grids
 aeromap/fitting:       base effects
 controllers:           base dynamics
 simulation:            base scene dynamics effects grids aeromap controllers
+identification:        base logs scene dynamics effects grids aeromap controllers simulation
 problems:              base scene dynamics effects grids aeromap controllers simulation
 problems/thrust_stand: base
 problems/robot_import: base scene dynamics effects grids aeromap controllers simulation problems

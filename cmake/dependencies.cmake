@@ -54,6 +54,8 @@ downwash_component(EXPORTS "exports of runs for other programs, and downwash exp
 list(APPEND CMAKE_MODULE_PATH ${CMAKE_CURRENT_LIST_DIR})  # finders of our own
 downwash_component(ROBOT_IMPORT "robots from URDF, SDF and MJCF, and downwash robot import"
   FINDS URDFDOM SDFormat MuJoCo pugixml DEBIAN liburdfdom-dev libsdformat-dev libmujoco-dev libpugixml-dev)
+downwash_component(IDENTIFICATION "vehicles identified from logs, and downwash identify"
+  FINDS Ceres DEBIAN libceres-dev)
 downwash_component(REPORT "pictures and pages of runs"
   FINDS fmt ZLIB DEBIAN libfmt-dev zlib1g-dev)
 downwash_component(CAMPAIGNS "campaigns and studies, downwash bench and downwash study"

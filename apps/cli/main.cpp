@@ -5,6 +5,7 @@
 #include "downwash/cli/compare_command.hpp"
 #include "downwash/cli/export_command.hpp"
 #include "downwash/cli/fit_commands.hpp"
+#include "downwash/cli/identify_command.hpp"
 #include "downwash/cli/program.hpp"
 #include "downwash/cli/robot_commands.hpp"
 #include "downwash/cli/study_commands.hpp"
@@ -47,6 +48,7 @@ void add_all(Command program, Action& action) {
     add_report(program, action);
     add_export(program, action, nullptr);
     add_robot(program, action);
+    add_identify(program, action, nullptr);
     add_margins(program, action);
     add_planners(program, action);
     add_manual(program, action);

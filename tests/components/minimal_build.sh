@@ -19,7 +19,7 @@ cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release "${hidden[@]}" 
     cat "$build/log"
     exit 1
 }
-for component in FITTING:libceres-dev EXPORTS:libgeographiclib-dev ROBOT_IMPORT:liburdfdom-dev REPORT:libfmt-dev \
+for component in FITTING:libceres-dev IDENTIFICATION:libceres-dev EXPORTS:libgeographiclib-dev ROBOT_IMPORT:liburdfdom-dev REPORT:libfmt-dev \
     CAMPAIGNS:libsqlite3-dev CLI:libcli11-dev; do
     grep -q "^-- Left out: .*Debian packages: .*${component#*:}" "$build/log" || {
         echo "CMake does not say that ${component%:*} is left out without ${component#*:}:"

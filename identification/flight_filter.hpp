@@ -1,0 +1,56 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "downwash/identification/logged_flight.hpp"
+#include "downwash/identification/surface_nodes.hpp"
+#include "downwash/identification/trial.hpp"
+
+// Private to identification/.
+
+namespace downwash::identification {
+
+/// What a pass of the filter says of the noise, summed over its innovations.
+struct FilterPass {
+    bool is_finite = false;
+    PerChannel squares{};    ///< of innovations
+    PerChannel predicted{};  ///< their variance without the noise of the sensor
+    PerChannel counts{};
+    double cost = 0;  ///< -2 log likelihood, but for a constant
+};
+
+/// A Kalman filter along a logged flight (docs/identification.md). Its gains are those of one trial, from pass(). With
+/// them, the innovations of other trials are predictions that differ by what these trials change.
+class FlightFilter {
+ public:
+    FlightFilter() = default;
+    virtual ~FlightFilter() = default;
+    FlightFilter(const FlightFilter&) = delete;
+    FlightFilter& operator=(const FlightFilter&) = delete;
+
+    /// Number of innovations.
+    [[nodiscard]] virtual Eigen::Index size() const = 0;
+    /// Innovations of one tick.
+    [[nodiscard]] virtual Eigen::Index per_tick() const = 0;
+    /// Finds the gains of a trial.
+    virtual FilterPass pass(const Trial& trial, const Noise& noise) = 0;
+    /// Innovations over their standard deviations, tick after tick. @return whether all are finite
+    [[nodiscard]] virtual bool innovations(const Trial& trial, Eigen::Ref<Eigen::VectorXd> out) const = 0;
+};
+
+/// How flights are filtered.
+struct FilterSettings {
+    double gust_m_s = 0;      ///< standard deviation of gusts
+    double gust_level_s = 1;  ///< how long a gust along the ground lasts [s]
+    double gust_up_s = 1;     ///< the same upward
+    double lead_s = 0.1;      ///< what of the log comes before the first innovation: the greatest delay
+    SurfaceNodes surface;     ///< nowhere: free air
+};
+
+/// @pre the flight has ticks beyond the lead; the robot is sound and has a number of joints that this library has
+[[nodiscard]] std::unique_ptr<FlightFilter> make_flight_filter(const SpaceRobot& robot, const LoggedFlight& flight,
+                                                               const FilterSettings& settings);
+
+}  // namespace downwash::identification
