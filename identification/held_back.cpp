@@ -66,6 +66,37 @@ SpaceMotion at_rest(const SpacePoint& reference) {
     return motion;
 }
 
+std::vector<Vector3> places_of(const SpaceFlight& flown) {
+    std::vector<Vector3> places_m;
+    for (const SpaceFlightRow& row : flown.rows) {
+        places_m.push_back(row.motion.position_m);
+    }
+    return places_m;
+}
+
+/// Places that the controller of a world sees: late, biased and noisy, as logs have them.
+std::vector<Vector3> seen_places_of(const SpaceFlight& flown, const SpaceRobot& robot, const SpaceWorld& world) {
+    const std::vector<Vector3> true_m = places_of(flown);
+    const double delay_ticks = std::max(0.0, (robot.controller.delay_s + world.delay_s) * robot.controller.rate_hz);
+    std::vector<Vector3> seen_m;
+    std::uint64_t bits = world.tape;
+    for (std::size_t tick = 0; tick < true_m.size(); ++tick) {
+        const double then = std::max(0.0, static_cast<double>(tick) - delay_ticks);  // it hovered before
+        const auto before = static_cast<std::size_t>(then);
+        const double share = then - static_cast<double>(before);
+        Vector3& place_m = seen_m.emplace_back(true_m[before]);
+        if (share > 0) {
+            place_m = (1 - share) * true_m[before] + share * true_m[before + 1];
+        }
+        place_m = place_m + world.position_bias_m;
+        for (double& coordinate_m : place_m) {
+            bits = simulation::mixed(bits);
+            coordinate_m += world.position_noise_m * normal_quantile(simulation::quantile_of(bits));
+        }
+    }
+    return seen_m;
+}
+
 }  // namespace
 
 HeldBackCoverage held_back_coverage(const SpaceRobot& robot, const LoggedFlight& flight, const Uncertainty& air,
@@ -79,7 +110,7 @@ HeldBackCoverage held_back_coverage(const SpaceRobot& robot, const LoggedFlight&
     }
     HeldBackCoverage coverage;
     coverage.worlds = worlds;
-    // Places that the controller sees in each world, tick after tick.
+    // Places as the log would have them in each world, tick after tick.
     std::vector<std::vector<Vector3>> seen_m;
     for (int i = 1; i <= worlds; ++i) {
         SpaceFlightSettings settings;
@@ -91,16 +122,7 @@ HeldBackCoverage held_back_coverage(const SpaceRobot& robot, const LoggedFlight&
             ++coverage.lost;
             continue;
         }
-        std::vector<Vector3>& places_m = seen_m.emplace_back();
-        std::uint64_t bits = settings.world.tape;
-        for (const SpaceFlightRow& row : flown.rows) {
-            Vector3 place_m = row.motion.position_m + settings.world.position_bias_m;
-            for (double& coordinate_m : place_m) {
-                bits = simulation::mixed(bits);
-                coordinate_m += settings.world.position_noise_m * normal_quantile(simulation::quantile_of(bits));
-            }
-            places_m.push_back(place_m);
-        }
+        seen_m.push_back(flight.is_true_motion ? places_of(flown) : seen_places_of(flown, robot, settings.world));
     }
     if (seen_m.empty()) {
         return coverage;

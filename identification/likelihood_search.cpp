@@ -7,12 +7,14 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "downwash/base/infinity.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/identification/flight_filter.hpp"
 #include "downwash/identification/information.hpp"
+#include "downwash/identification/noise_search.hpp"
 #include "downwash/identification/sought_numbers.hpp"
 #include "downwash/identification/verdicts.hpp"
 
@@ -24,11 +26,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int max_rounds = 12;   ///< of gains and noise, then of numbers
-constexpr int first_passes = 2;  ///< of the noise, in the first round
+constexpr int max_rounds = 12;  ///< of gains and noise, then of numbers
+constexpr int max_steps = 4;    ///< of the numbers, in a round
 /// A round that lowers the cost by less is the last: no number then changed by more than 0.1 standard deviations.
 constexpr double small_gain = 5e-3;
-constexpr double small_change = 0.05;  ///< the same of a variance of the noise, relative
+/// The same of the noise, of -2 log likelihood: half of what chance changes it by.
+constexpr double small_fall = 0.5;
+/// Slopes of the motion are good enough until a number has moved so far, in standard deviations of what was known.
+constexpr double small_move = 0.1;
 
 /// Distances in radii at which K of a surface is identified.
 const std::vector<double> node_distances{0.5, 0.75, 1, 1.5, 2, 3, 4, 6};
@@ -40,15 +45,6 @@ Noise first_noise(const Uncertainty& uncertainty) {
         {variance(uncertainty.position_noise_m.high, 1e-3), 1e-6, 1e-6,
          variance(uncertainty.velocity_noise_m_s.high, 1e-3), variance(uncertainty.gyro_noise_rad_s.high, 1e-3), 1e-4},
         {0.01, 1, 100}};
-}
-
-/// How far accelerations may fall from their first values, and by how much at once.
-constexpr double least_accelerations = 1e-7, smaller = 0.02;
-
-/// The variance of what is measured for the next pass: it does not fall to nothing where the filter expects too much.
-double next_measured(double before, double found) {
-    constexpr double least = 1e-12, greatest_step = 3;
-    return std::max({found, before / greatest_step, least});
 }
 
 /// The innovations of a flight as Ceres asks for them; slopes are differences.
@@ -112,18 +108,18 @@ class Search {
         for (const LoggedFlight& flight : flights) {
             flights_.push_back({&flight, make_flight_filter(robot, flight, filter), {0, 0, 0}});
         }
-        noise_.fill(first_noise(known));
+        noise_.fill({first_noise(known), robot.joints() > 0});
     }
 
     /// Rounds of gains, noise and numbers until the numbers stay.
     void run() {
-        for (rounds_ = 1; rounds_ <= max_rounds; ++rounds_) {
-            const bool is_settled = find_noise(rounds_ == 1 ? first_passes : 1);
-            if (solve() < small_gain && is_settled) {
-                is_converged_ = true;
-                break;
-            }
+        for (rounds_ = 1; rounds_ <= max_rounds && !is_converged_; ++rounds_) {
+            linearise();
+            const double fall = lower_noise();
+            is_converged_ = solve() < small_gain && fall < small_fall;
         }
+        --rounds_;
+        lower_noise();  // of the last numbers, with its gains
     }
 
     [[nodiscard]] Information information() const {
@@ -152,9 +148,11 @@ class Search {
     [[nodiscard]] const std::vector<double>& vehicle() const { return vehicle_; }
     [[nodiscard]] const SurfaceNodes& surface() const { return surface_; }
     [[nodiscard]] const std::array<double, 3>& wind(std::size_t flight) const { return flights_[flight].wind; }
-    [[nodiscard]] const PerChannel& noise(bool of_true_motion) const { return noise_[of_true_motion ? 1 : 0].measured; }
-    [[nodiscard]] const PerChannel& counts(bool of_true_motion) const { return counts_[of_true_motion ? 1 : 0]; }
-    [[nodiscard]] int rounds() const { return std::min(rounds_, max_rounds); }
+    [[nodiscard]] const PerChannel& noise(bool of_true_motion) const { return noise_[of_true_motion ? 1 : 0].noise().measured; }
+    [[nodiscard]] const PerChannel& counts(bool of_true_motion) const {
+        return noise_[of_true_motion ? 1 : 0].counts();
+    }
+    [[nodiscard]] int rounds() const { return rounds_; }
     [[nodiscard]] bool is_converged() const { return is_converged_; }
 
  private:
@@ -173,82 +171,67 @@ class Search {
     }
     [[nodiscard]] std::size_t vehicle_size() const { return static_cast<std::size_t>(sought_.of_vehicle()); }
 
-    using AllNoise = std::array<Noise, 2>;  ///< of what vehicles saw, and of true motions
-
-    /// Gains of the present numbers and a noise; then what of it is measured as the innovations show it.
-    /// @param[in,out] noise before and after   @return the cost with the noise before
-    double pass_all(AllNoise& noise) {
-        std::array<FilterPass, 2> sums{};
-        double cost = 0;
+    /// Applies a function of filter and trial to all flights of what vehicles saw (0), or of true motions (1).
+    template <class Run>
+    void for_flights(std::size_t group, const Run& run) {
         for (Flight& flight : flights_) {
-            const std::size_t group = flight.log->is_true_motion ? 1 : 0;
-            const FilterPass pass =
-                flight.filter->pass(sought_.trial(vehicle_.data(), flight.wind.data()), noise[group]);
-            cost += pass.is_finite ? pass.cost : infinity;
-            for (std::size_t k = 0; k < channel_count; ++k) {
-                sums[group].squares[k] += pass.squares[k];
-                sums[group].predicted[k] += pass.predicted[k];
-                sums[group].counts[k] += pass.counts[k];
+            if ((flight.log->is_true_motion ? 1U : 0U) == group) {
+                run(*flight.filter, sought_.trial(vehicle_.data(), flight.wind.data()));
             }
         }
-        for (std::size_t group = 0; group < 2; ++group) {
-            counts_[group] = sums[group].counts;
-            for (std::size_t k = 0; k < channel_count; ++k) {
-                const double found = (sums[group].squares[k] - sums[group].predicted[k]) / sums[group].counts[k];
-                if (std::isfinite(found)) {
-                    noise[group].measured[k] = next_measured(noise[group].measured[k], found);
-                }
-            }
-        }
-        return std::isfinite(cost) ? cost : infinity;
     }
 
-    /// The noise at the present numbers, and the gains that it gives: accelerations fall while that makes the logs more
-    /// likely. @return whether it changed little
-    bool find_noise(int passes) {
-        const AllNoise before = noise_;
-        double cost = infinity;
-        for (int i = 0; i < passes; ++i) {
-            cost = pass_all(noise_);
+    /// Linearises the motions, unless the numbers are still where they were when that was last done.
+    void linearise() {
+        double moved = linearised_at_.empty() ? infinity : 0;
+        for (std::size_t i = 0; i < linearised_at_.size(); ++i) {
+            moved = std::max(moved, std::abs(vehicle_[i] - linearised_at_[i]));
         }
-        AllNoise less = noise_;
-        for (Noise& noise : less) {
-            for (double& acceleration : noise.accelerations) {
-                acceleration *= smaller;
+        if (moved < small_move) {
+            return;
+        }
+        linearised_at_ = vehicle_;
+        for (const std::size_t group : {0U, 1U}) {
+            for_flights(group, [&](FlightFilter& filter, const Trial& trial) {
+                filter.linearise(trial, noise_[group].noise());
+            });
+        }
+    }
+
+    /// Finds the noise at the present numbers, and the gains that it gives. @return by how much -2 log likelihood fell
+    double lower_noise() {
+        double fall = 0;
+        for (const std::size_t group : {0U, 1U}) {
+            const auto pass = [&](const Noise& noise) {
+                FilterPass sums;
+                sums.is_finite = true;
+                for_flights(group, [&](FlightFilter& filter, const Trial& trial) {
+                    sums += filter.pass(trial, noise);
+                });
+                return sums;
+            };
+            const std::optional<double> by = noise_[group].lower(pass);
+            if (!by) {
+                throw_input_error(
+                    "no motion of this robot follows from its commands in the logs; are they logs of this robot, with "
+                    "its rotors in the same order and its thrusts in newtons?");
             }
+            fall += *by;
         }
-        if (less[0].accelerations[0] >= least_accelerations * first_noise({}).accelerations[0]) {
-            if (pass_all(less) < cost) {
-                noise_ = less;
-                return false;
-            }
-            AllNoise kept = noise_;
-            cost = pass_all(kept);  // its gains
-        }
-        if (cost == infinity) {
-            throw_input_error(
-                "no motion of this robot follows from its commands in the logs; are they logs of this robot, with its "
-                "rotors in the same order and its thrusts in newtons?");
-        }
-        double change = 0;
-        for (std::size_t k = 0; k < channel_count; ++k) {
-            for (std::size_t group = 0; group < 2; ++group) {
-                const double was = before[group].measured[k];
-                change = std::max(change, std::abs(noise_[group].measured[k] - was) / was);
-            }
-        }
-        return change < small_change;
+        return fall;
     }
 
     /// The most likely numbers with the present gains. @return by how much the cost fell
     double solve() {
         ceres::Problem problem;  // it owns the costs
         const Index count = sought_.of_vehicle();
+        double residuals = 0;
         problem.AddResidualBlock(new ceres::NormalPrior(MatrixXd::Identity(count, count), VectorXd::Zero(count)),
                                  nullptr, vehicle_.data());
         for (Flight& flight : flights_) {
             problem.AddResidualBlock(new FlightCost(*flight.filter, sought_), nullptr, vehicle_.data(),
                                      flight.wind.data());
+            residuals += static_cast<double>(flight.filter->size());
             problem.AddResidualBlock(new ceres::NormalPrior(MatrixXd::Identity(3, 3), VectorXd::Zero(3)), nullptr,
                                      flight.wind.data());
         }
@@ -259,8 +242,8 @@ class Search {
         options.linear_solver_type = ceres::DENSE_QR;
         options.logging_type = ceres::SILENT;
         options.num_threads = 1;
-        options.max_num_iterations = 3;
-        options.function_tolerance = 1e-9;
+        options.max_num_iterations = max_steps;
+        options.function_tolerance = small_gain / std::max(1.0, residuals);
         ceres::Solver::Summary summary;
         ceres::Solve(options, &problem, &summary);
         return summary.initial_cost - summary.final_cost;
@@ -288,8 +271,8 @@ class Search {
     SoughtNumbers sought_;
     std::vector<double> vehicle_;
     std::vector<Flight> flights_;
-    AllNoise noise_{};
-    std::array<PerChannel, 2> counts_{};
+    std::array<NoiseSearch, 2> noise_;  ///< of what vehicles saw, and of true motions
+    std::vector<double> linearised_at_;
     int rounds_ = 0;
     bool is_converged_ = false;
 };
