@@ -20,6 +20,7 @@
 #include "downwash/base/quantile.hpp"
 #include "downwash/bench/machine.hpp"
 #include "downwash/bench/statistics.hpp"
+#include "downwash/identification/held_back.hpp"
 #include "downwash/identification/identification.hpp"
 #include "downwash/planner/space_solve.hpp"
 #include "downwash/problems/space_problem_model.hpp"
@@ -40,6 +41,8 @@ struct Options {
     std::uint64_t seed = 1;
     int threads = 1;
     bool shows_each = false;
+    test::LogNoise log_noise;
+    int held_back_worlds = 0;  ///< 0: no flight is held back
     std::string logs;     ///< folder for the logs as CSV; empty: none
     std::string problem;  ///< empty: no plans
     std::uint64_t iterations = 400, worlds = 400;
@@ -112,25 +115,49 @@ struct Studied {
     Vehicle vehicle;
     std::vector<SpaceWorld> worlds;
     std::optional<Identification> found;  ///< empty: a flight did not end
+    std::optional<HeldBackCoverage> before, after;  ///< of a flight held back
 };
+
+/// The log of a flight of a vehicle. @return nothing if it did not end
+std::optional<LoggedFlight> flown_log(const SpaceRobot& robot, const Options& options, const Vehicle& vehicle,
+                                      const SpaceWorld& world, const std::string& name, test::Random& random) {
+    const SpacePlan plan = test::identification_reference(robot, options.length_s, random);
+    const judge::SpaceJudgedFlight flight = test::fly_for_log(vehicle.robot, world, plan);
+    if (flight.outcome != judge::Outcome::ok) {
+        return std::nullopt;
+    }
+    LoggedFlight log = test::log_of(flight, name);
+    test::add_noise(options.log_noise, robot.joints(), random, log);
+    return log;
+}
 
 Studied study(const SpaceRobot& robot, const Options& options, std::uint64_t index) {
     Studied studied{vehicle_of(robot, options.seed, index), {}, {}};
     test::Random random(simulation::mixed(options.seed + 77) ^ index);
     std::vector<LoggedFlight> logs;
     for (int i = 0; i < options.flights; ++i) {
-        const SpacePlan plan = test::identification_reference(robot, options.length_s, random);
         studied.worlds.push_back(world_of_flight(robot, studied.vehicle, options.seed, i));
-        const judge::SpaceJudgedFlight flight = test::fly_for_log(studied.vehicle.robot, studied.worlds.back(), plan);
-        if (flight.outcome != judge::Outcome::ok) {
+        std::optional<LoggedFlight> log = flown_log(robot, options, studied.vehicle, studied.worlds.back(),
+                                                    fmt::format("flight {}", i + 1), random);
+        if (!log) {
             return studied;
         }
-        logs.push_back(test::log_of(flight, fmt::format("flight {}", i + 1)));
+        logs.push_back(std::move(*log));
         if (!options.logs.empty()) {
             write_csv(logs.back(), robot, fmt::format("{}/log_{}_{}.csv", options.logs, index, i + 1));
         }
     }
     studied.found = identify(robot, logs);
+    if (options.held_back_worlds > 0) {
+        const SpaceWorld world = world_of_flight(robot, studied.vehicle, options.seed, options.flights);
+        if (const auto log = flown_log(robot, options, studied.vehicle, world, "held back", random)) {
+            const auto coverage = [&](const SpaceRobot& of) {
+                return held_back_coverage(of, *log, Uncertainty{}, options.held_back_worlds, options.seed + index);
+            };
+            studied.before = coverage(robot);
+            studied.after = coverage(learned_robot(robot, *studied.found));
+        }
+    }
     return studied;
 }
 
@@ -206,6 +233,35 @@ void print(const std::vector<std::pair<std::string, Tally>>& tallies) {
                 : std::string("-"),
             tally.learned > 1 ? fmt::format("{:+.2f}, {:.2f}", mean, std::sqrt(std::max(0.0, square - mean * mean)))
                               : std::string("-"));
+    }
+}
+
+/// How far flights that were held back are within worlds, before and after.
+void print_held_back(const std::vector<Studied>& all, int worlds) {
+    fmt::print(
+        "\nFlights held back, in {} worlds: the share of their samples between the 2.5 % and 97.5 % quantiles, and the "
+        "distance of these.\n\n",
+        worlds);
+    fmt::print("| worlds | flights | x, y, z within | least of a flight | width along x, y, z [cm] |\n");
+    fmt::print("| --- | ---: | ---: | ---: | ---: |\n");
+    for (const auto& [name, of] : {std::pair("before", &Studied::before), std::pair("after", &Studied::after)}) {
+        std::vector<HeldBackCoverage> coverages;
+        for (const Studied& studied : all) {
+            if (studied.*of) {
+                coverages.push_back(*(studied.*of));
+            }
+        }
+        Vector3 within{}, width_m{};
+        double least = 1;
+        for (const HeldBackCoverage& coverage : coverages) {
+            const double share = 1 / static_cast<double>(coverages.size());
+            within = within + share * coverage.share_within;
+            width_m = width_m + share * coverage.width_m;
+            least = std::min(least, *std::ranges::min_element(coverage.share_within));
+        }
+        fmt::print("| {} | {} | {:.1f}, {:.1f}, {:.1f} % | {:.1f} % | {:.2f}, {:.2f}, {:.2f} |\n", name,
+                   coverages.size(), 100 * within[0], 100 * within[1], 100 * within[2], 100 * least, 100 * width_m[0],
+                   100 * width_m[1], 100 * width_m[2]);
     }
 }
 
@@ -314,6 +370,12 @@ void measure(const Options& options) {
                 fmt::print("<!-- {} {} {} -->\n", noise.name, noise.sd, noise.sd_of_sd);
             }
             fmt::print("<!-- rounds {} fit {} -->\n", studied.found->iterations, studied.found->fit);
+            if (studied.after) {
+                const HeldBackCoverage &before = *studied.before, &after = *studied.after;
+                fmt::print("<!-- held back: {:.3f} {:.3f} {:.3f} -> {:.3f} {:.3f} {:.3f} -->\n", before.share_within[0],
+                           before.share_within[1], before.share_within[2], after.share_within[0],
+                           after.share_within[1], after.share_within[2]);
+            }
         }
     }
     fmt::print(
@@ -322,6 +384,9 @@ void measure(const Options& options) {
         robot.name, options.vehicles, options.flights, options.flights > 1 ? "s" : "", options.length_s, options.seed,
         lost, open);
     print(tallies);
+    if (options.held_back_worlds > 0) {
+        print_held_back(all, options.held_back_worlds);
+    }
     if (!options.problem.empty()) {
         SpaceProblem problem = read_space_problem(options.problem);
         problem.robot = robot;
@@ -345,5 +410,16 @@ int main(int argc, char** argv) {
     program.add_option("--iterations", options.iterations, "of each search");
     program.add_option("--worlds", options.worlds, "of the true vehicle in which a plan is flown");
     program.add_flag("--each", options.shows_each, "show every vehicle");
-    return run_program(program, argc, argv, [&] { measure(options); });
+    program.add_option("--held-back", options.held_back_worlds, "worlds for a further flight; 0: none");
+    double attitude_deg = 0.05, joint_deg = 0.02;
+    options.log_noise.joint_rate_rad_s = 0.01;
+    program.add_option("--attitude-noise", attitude_deg, "of a log [degrees], a standard deviation");
+    program.add_option("--joint-noise", joint_deg, "the same of joints");
+    program.add_option("--joint-rate-noise", options.log_noise.joint_rate_rad_s, "the same of their rates [rad/s]");
+    return run_program(program, argc, argv, [&] {
+        constexpr double degree = 0.017453292519943295;
+        options.log_noise.attitude_rad = attitude_deg * degree;
+        options.log_noise.joint_rad = joint_deg * degree;
+        measure(options);
+    });
 }

@@ -56,6 +56,37 @@ TEST_CASE("A flight tells the robot that flew it, and the file that comes of it 
     CHECK(work.text("again.yaml") == file);
 }
 
+TEST_CASE("Flights near the ground give its thrust ratios, which a model is fitted to") {
+    const Workspace work;
+    Json knots = Json::array();
+    const double heights[] = {1.5, 0.5, 0.2, 0.17, 0.3, 0.17, 0.7, 1.5};
+    for (int i = 0; i < 8; ++i) {
+        knots.push_back(Json{{"t_s", 1.5 * i},
+                             {"x_m", i % 2 == 0 ? 0.3 : -0.3},
+                             {"y_m", i % 3 == 0 ? 0.2 : -0.2},
+                             {"z_m", heights[i]},
+                             {"yaw_rad", i % 2 == 0 ? 0.3 : -0.3},
+                             {"joint_1_rad", i % 2 == 0 ? -0.3 : -0.5}});  // the arm points up
+    }
+    write_file(work.in_run("plan.json"),
+               Json{{"schema", "downwash/solution/v1"}, {"plan", {{"reference", knots}}}}.dump());
+    write_file(work.in_run("floor.yaml"),
+               "schema: downwash/problem/v1\nname: floor\nrobot: " + robot +
+                   "\nenvironment:\n  bounds: {x_m: [-3, 3], y_m: [-3, 3], z_m: [0.1, 5]}\n  obstacles:\n"
+                   "    - {name: floor, box: {size_m: [40, 40, 1], center_m: [0, 0, -0.5]}}\n"
+                   "start: {x_m: 0.3, y_m: 0.2, z_m: 1.5, yaw_deg: 17.188733853924695, joints_deg: "
+                   "[-17.188733853924695]}\n"
+                   "goal: {configuration: {x_m: -0.3, y_m: -0.2, z_m: 1.5, tolerance_m: 0.5}, hold_s: 0}\n");
+    static_cast<void>(work.run("execute floor.yaml --plan plan.json --quiet --out flown"));
+    const Json found = work.succeed("identify", robot,
+                                    "flown/trajectory.csv --true-motion -o learned.yaml --ground 0 --surface-data k.csv"
+                                    " --json")
+                           .json();
+    CHECK(found.at("thrust_ratios").size() >= 3);
+    const Json fit = work.succeed("aeromap fit k.csv --model li --surface ground --weighted --json").json();
+    CHECK(fit.at("parameters").at("rho").get<double>() == Approx(1).epsilon(0.1));  // Cheeseman and Bennett
+}
+
 TEST_CASE("What identify cannot take is refused with a reason") {
     const Workspace work;
     write_file(work.in_run("log.csv"), "t_s,x_m,y_m,z_m\n0,0,0,2\n0.01,0,0,2\n");

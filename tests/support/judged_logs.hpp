@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "downwash/base/portable_math.hpp"
 #include "downwash/identification/logged_flight.hpp"
 #include "downwash/judge/space_judge.hpp"
 #include "downwash/simulation/space_robot.hpp"
@@ -61,6 +63,33 @@ inline LoggedFlight log_of(const judge::SpaceJudgedFlight& flight, const std::st
         log.ticks.push_back(tick);
     }
     return log;
+}
+
+/// What a log has beside what the judge's controller saw: its attitude and joints are exact, those of no real log are.
+/// Standard deviations of each angle and rate.
+struct LogNoise {
+    double attitude_rad = 0, joint_rad = 0, joint_rate_rad_s = 0;
+};
+
+/// Adds white noise to a log.
+inline void add_noise(const LogNoise& noise, int joints, Random& random, LoggedFlight& log) {
+    const auto normal = [&](double sd) { return sd > 0 ? sd * normal_quantile(random.uniform(1e-12, 1)) : 0; };
+    for (LoggedTick& tick : log.ticks) {
+        const double x = 0.5 * normal(noise.attitude_rad), y = 0.5 * normal(noise.attitude_rad),
+                     z = 0.5 * normal(noise.attitude_rad);
+        const std::array<double, 4> q = tick.seen.attitude;
+        std::array<double, 4>& turned = tick.seen.attitude;
+        turned = {q[0] - q[1] * x - q[2] * y - q[3] * z, q[1] + q[0] * x + q[2] * z - q[3] * y,
+                  q[2] + q[0] * y - q[1] * z + q[3] * x, q[3] + q[0] * z + q[1] * y - q[2] * x};
+        const double length = std::hypot(std::hypot(turned[0], turned[1]), std::hypot(turned[2], turned[3]));
+        for (double& number : turned) {
+            number /= length;
+        }
+        for (std::size_t i = 0; i < static_cast<std::size_t>(joints); ++i) {
+            tick.seen.joints_rad[i] += normal(noise.joint_rad);
+            tick.seen.joint_rates_rad_s[i] += normal(noise.joint_rate_rad_s);
+        }
+    }
 }
 
 /// Flies a reference in a world, far from everything.
