@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs campaigns of bench/campaigns/ and prints their reports.
 #
-#   bench/campaigns.sh              all but ci: writes bench/results/NAME.md (three hours on two cores)
+#   bench/campaigns.sh              all but ci: writes bench/results/NAME.md (four hours on two cores)
 #   bench/campaigns.sh NAME...      only these
 #   bench/campaigns.sh ci           what every change is held to: prints its report and writes nothing (half a minute)
 #

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 
@@ -14,79 +15,92 @@ using Complex = std::complex<double>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A loop's answer at a frequency, exactly: a past motion is the motion times z^-age.
-class FrequencyResponse {
- public:
-    explicit FrequencyResponse(const LinearLoop& loop) : loop_(loop) {}
-
-    /// The loop's gain L: the command that comes back, reversed, for one that goes in. With T from what is added to the
-    /// command, u = y + d and y = T d, so that L = -T / (1 + T).
-    [[nodiscard]] Complex gain_at(double angle_rad) const {
-        const Eigen::Index size = loop_.a.rows();
-        Eigen::MatrixXcd a = loop_.a;
-        Eigen::RowVectorXcd c = loop_.c;
-        for (const LatePart& part : loop_.late) {
-            const Complex ago = std::polar(1.0, -angle_rad * part.age);
-            a.leftCols(part.a.cols()) += ago * part.a;
-            c.head(part.a.cols()) += ago * part.c;
-        }
-        const Eigen::MatrixXcd resolvent = std::polar(1.0, angle_rad) * Eigen::MatrixXcd::Identity(size, size) - a;
-        const Complex t = c * resolvent.partialPivLu().solve(loop_.b.cast<Complex>());
-        return -t / (1.0 + t);
-    }
-
- private:
-    const LinearLoop& loop_;
+/// A sample of a loop's gain L.
+struct Sample {
+    double frequency_rad_s = 0;
+    Complex gain;
 };
+
+/// The gains L of loops at a frequency, exactly: a past motion is the motion times z^-age. L is the command that comes
+/// back, reversed, for one that goes in. With T from what is added to the command, u = y + d and y = T d, so that
+/// L = -T / (1 + T).
+std::vector<Complex> gains_at(const LinearLoops& loops, double angle_rad) {
+    const Eigen::Index size = loops.a.rows();
+    Eigen::MatrixXcd a = loops.a, c = loops.c;
+    for (const LatePart& part : loops.late) {
+        const Complex ago = std::polar(1.0, -angle_rad * part.age);
+        a.leftCols(part.a.cols()) += ago * part.a;
+        c.leftCols(part.a.cols()) += ago * part.c;
+    }
+    // What takes the time is the same for all loops.
+    const Eigen::PartialPivLU<Eigen::MatrixXcd> resolvent(
+        std::polar(1.0, angle_rad) * Eigen::MatrixXcd::Identity(size, size) - a);
+    std::vector<Complex> gains;
+    for (Eigen::Index i = 0; i < loops.b.cols(); ++i) {
+        const Eigen::VectorXcd x = resolvent.solve(loops.b.col(i).cast<Complex>());
+        const Eigen::RowVectorXcd seen = c.row(i);
+        const Complex t = seen * x;
+        gains.push_back(-t / (1.0 + t));
+    }
+    return gains;
+}
+
+/// What a loop's gain between two neighbouring frequencies tells of its margins.
+void look_between(const Sample& sample_before, const Sample& sample, LoopMargins& margins) {
+    const auto& [frequency_before, before] = sample_before;
+    const auto& [frequency, gain] = sample;
+    const double size = std::log(std::abs(gain));
+    const double size_before = std::log(std::abs(before));
+    if (size * size_before <= 0 && size != size_before) {  // the gain crosses 1
+        const double at = size_before / (size_before - size);
+        const double frequency_there = frequency_before * std::pow(frequency / frequency_before, at);
+        const double phase = std::arg(-before) + at * std::arg(gain / before);  // from -1
+        const double folded = std::remainder(phase, 2 * std::numbers::pi);
+        margins.phase_margin_rad = std::min(margins.phase_margin_rad, std::abs(folded));
+        margins.crossover_rad_s = frequency_there;
+        const double lag = folded >= 0 ? folded : folded + 2 * std::numbers::pi;
+        margins.delay_margin_s = std::min(margins.delay_margin_s, lag / frequency_there);
+    }
+    const bool crosses_axis = gain.imag() * before.imag() <= 0 && gain.imag() != before.imag();
+    if (crosses_axis) {
+        const double at = before.imag() / (before.imag() - gain.imag());
+        const double real = before.real() + at * (gain.real() - before.real());
+        if (real < 0) {
+            margins.gain_margin_db = std::min(margins.gain_margin_db, std::abs(20 * std::log10(-real)));
+        }
+    }
+    // Of the closed loop L / (1 + L), beside 1 / sqrt 2.
+    const double answer = std::log(std::numbers::sqrt2 * std::abs(gain / (1.0 + gain)));
+    const double answer_before = std::log(std::numbers::sqrt2 * std::abs(before / (1.0 + before)));
+    if (answer * answer_before <= 0 && answer != answer_before) {
+        const double at = answer_before / (answer_before - answer);
+        margins.bandwidth_rad_s = frequency_before * std::pow(frequency / frequency_before, at);
+    }
+}
 
 }  // namespace
 
-LoopMargins margins_of(const LinearLoop& loop, double tick_s) {
-    const FrequencyResponse response(loop);
+std::vector<LoopMargins> margins_of(const LinearLoops& loops, double tick_s) {
     constexpr int samples = 500;
     constexpr double lowest_rad_s = 0.02;
     const double highest_rad_s = std::numbers::pi / tick_s;
-    LoopMargins margins{infinity, infinity, 0, infinity, 0};
-    double frequency_before = 0;
-    Complex before;
+    const auto count = static_cast<std::size_t>(loops.b.cols());
+    std::vector<LoopMargins> margins(count, LoopMargins{infinity, infinity, 0, infinity, 0});
+    std::vector<Sample> before(count);
     for (int i = 0; i < samples; ++i) {
         const double share = static_cast<double>(i) / (samples - 1);
         const double frequency = lowest_rad_s * std::pow(highest_rad_s / lowest_rad_s, share);
-        Complex gain = response.gain_at(std::min(frequency * tick_s, std::numbers::pi));
-        if (i == samples - 1) {
-            gain = gain.real();  // at half the sampling frequency L is real: the curve ends on the axis
+        const std::vector<Complex> gains = gains_at(loops, std::min(frequency * tick_s, std::numbers::pi));
+        for (std::size_t loop = 0; loop < count; ++loop) {
+            Sample here{frequency, gains[loop]};
+            if (i == samples - 1) {
+                here.gain = here.gain.real();  // at half the sampling frequency L is real: the curve ends on the axis
+            }
+            if (i > 0) {
+                look_between(before[loop], here, margins[loop]);
+            }
+            before[loop] = here;
         }
-        if (i > 0) {
-            const double size = std::log(std::abs(gain));
-            const double size_before = std::log(std::abs(before));
-            if (size * size_before <= 0 && size != size_before) {  // the gain crosses 1
-                const double at = size_before / (size_before - size);
-                const double frequency_there = frequency_before * std::pow(frequency / frequency_before, at);
-                const double phase = std::arg(-before) + at * std::arg(gain / before);  // from -1
-                const double folded = std::remainder(phase, 2 * std::numbers::pi);
-                margins.phase_margin_rad = std::min(margins.phase_margin_rad, std::abs(folded));
-                margins.crossover_rad_s = frequency_there;
-                const double lag = folded >= 0 ? folded : folded + 2 * std::numbers::pi;
-                margins.delay_margin_s = std::min(margins.delay_margin_s, lag / frequency_there);
-            }
-            const bool crosses_axis = gain.imag() * before.imag() <= 0 && gain.imag() != before.imag();
-            if (crosses_axis) {
-                const double at = before.imag() / (before.imag() - gain.imag());
-                const double real = before.real() + at * (gain.real() - before.real());
-                if (real < 0) {
-                    margins.gain_margin_db = std::min(margins.gain_margin_db, std::abs(20 * std::log10(-real)));
-                }
-            }
-            // Of the closed loop L / (1 + L), beside 1 / sqrt 2.
-            const double answer = std::log(std::numbers::sqrt2 * std::abs(gain / (1.0 + gain)));
-            const double answer_before = std::log(std::numbers::sqrt2 * std::abs(before / (1.0 + before)));
-            if (answer * answer_before <= 0 && answer != answer_before) {
-                const double at = answer_before / (answer_before - answer);
-                margins.bandwidth_rad_s = frequency_before * std::pow(frequency / frequency_before, at);
-            }
-        }
-        before = gain;
-        frequency_before = frequency;
     }
     return margins;
 }

@@ -17,7 +17,7 @@ namespace downwash {
 namespace {
 
 using simulation::LatePart;
-using simulation::LinearLoop;
+using simulation::LinearLoops;
 
 constexpr std::array<std::string_view, 3> input_names = {"thrust", "pitch_torque", "joint_torque"};
 
@@ -70,7 +70,7 @@ int number_of_past(int age, int i) {
                : simulation::state_numbers + (age - simulation::recent_ticks - 1) * motion_numbers + i;
 }
 
-LinearLoop linearised(const Disturbed& tick) {
+LinearLoops linearised(const Disturbed& tick) {
     constexpr double step = 1e-6;
     const simulation::WorldNumbers<double>& world = tick.model.nominal_world().numbers;
     FlightState at_rest = tick.trim.state;
@@ -102,7 +102,7 @@ LinearLoop linearised(const Disturbed& tick) {
         difference(above, below, [&](Eigen::Index row) -> double& { return a(row); });
         c = (above.commanded - below.commanded) / (2 * step);
     };
-    LinearLoop loop{Eigen::MatrixXd(size, size), Eigen::VectorXd(size), Eigen::RowVectorXd(size), {}};
+    LinearLoops loop{Eigen::MatrixXd(size, size), Eigen::MatrixXd(size, 1), Eigen::MatrixXd(1, size), {}};
     for (Eigen::Index column = 0; column < size; ++column) {
         column_of(used[static_cast<std::size_t>(column)], loop.a.col(column), loop.c(column));
     }
@@ -110,7 +110,7 @@ LinearLoop linearised(const Disturbed& tick) {
     if (world.delay_ticks > 0) {
         const int ages = simulation::recent_ticks + static_cast<int>(at_rest.world.older.size());
         for (int age = 1; age <= ages; ++age) {
-            LatePart part{age, Eigen::MatrixXd(size, motion_numbers), Eigen::RowVectorXd(motion_numbers)};
+            LatePart part{age, Eigen::MatrixXd(size, motion_numbers), Eigen::MatrixXd(1, motion_numbers)};
             for (int i = 0; i < motion_numbers; ++i) {
                 column_of(number_of_past(age, i), part.a.col(i), part.c(i));
             }
@@ -142,7 +142,7 @@ std::array<LoopMargins, 3> loop_margins(const Robot& robot, double arm_rad) {
     std::array<LoopMargins, 3> margins{};
     for (const LoopInput input : all_loop_inputs) {
         margins[static_cast<std::size_t>(input)] =
-            simulation::margins_of(linearised({model, hover.trim, input}), model.tick().tick_s);
+            simulation::margins_of(linearised({model, hover.trim, input}), model.tick().tick_s).front();
     }
     return margins;
 }

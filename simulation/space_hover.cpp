@@ -23,40 +23,20 @@ namespace {
 using simulation::HoverChange;
 using simulation::HoverTick;
 using simulation::LatePart;
-using simulation::LinearLoop;
+using simulation::LinearLoops;
 using simulation::SpaceHoverLoop;
 
-/// A hover that was linearised: x' = A x + B u, y = C x, with what is seen late, a column of B and a row of C for each
-/// loop.
+/// A hover that was linearised, with a loop for each of space_loops.
 struct LinearHover {
-    struct Late {
-        int age = 0;
-        Eigen::MatrixXd a, c;
-    };
-    Eigen::MatrixXd a, b, c;
-    std::vector<Late> late;
+    LinearLoops loops;
     std::vector<int> used;  ///< the number of the state that each row is
-
-    [[nodiscard]] LinearLoop loop(Eigen::Index i) const {
-        LinearLoop one{a, b.col(i), c.row(i), {}};
-        for (const Late& part : late) {
-            one.late.push_back({part.age, part.a, part.c.row(i)});
-        }
-        return one;
-    }
-    [[nodiscard]] Eigen::MatrixXd jacobian() const {
-        std::vector<LatePart> parts;
-        for (const Late& part : late) {
-            parts.push_back({part.age, part.a, {}});
-        }
-        return simulation::with_past(a, parts);
-    }
 };
 
 /// By central differences. K is linear already, so that the step may be small: 1e-6 leaves an error of some 1e-10.
 LinearHover linearised(SpaceHoverLoop& loop) {
     constexpr double step = 1e-6;
     LinearHover linear;
+    LinearLoops& found = linear.loops;
     const std::vector<bool> feeds_back = loop.feeds_back();
     for (std::size_t i = 0; i < feeds_back.size(); ++i) {
         if (feeds_back[i]) {
@@ -82,26 +62,26 @@ LinearHover linearised(SpaceHoverLoop& loop) {
         }
     };
     loop.tick({}, above);
-    linear.a.resize(size, size);
-    linear.b.resize(size, loops());
-    linear.c.resize(loops(), size);
+    found.a.resize(size, size);
+    found.b.resize(size, loops());
+    found.c.resize(loops(), size);
     for (Eigen::Index column = 0; column < size; ++column) {
         const int number = linear.used[static_cast<std::size_t>(column)];
-        differentiate({HoverChange::Of::state, number}, linear.a.col(column), linear.c.col(column));
+        differentiate({HoverChange::Of::state, number}, found.a.col(column), found.c.col(column));
     }
     Eigen::VectorXd at_once(loops());  // the law decides before anything is added
     for (Eigen::Index i = 0; i < loops(); ++i) {
-        differentiate({HoverChange::Of::loop, static_cast<int>(i)}, linear.b.col(i), at_once);
+        differentiate({HoverChange::Of::loop, static_cast<int>(i)}, found.b.col(i), at_once);
     }
     // The delay lies between two ages.
     const int motion = loop.motion_numbers();
     const int oldest = static_cast<int>(std::ceil(loop.delay_ticks()));
     for (int age = std::max(1, static_cast<int>(std::floor(loop.delay_ticks()))); age <= oldest; ++age) {
-        LinearHover::Late part{age, Eigen::MatrixXd(size, motion), Eigen::MatrixXd(loops(), motion)};
+        LatePart part{age, Eigen::MatrixXd(size, motion), Eigen::MatrixXd(loops(), motion)};
         for (int i = 0; i < motion; ++i) {
             differentiate({HoverChange::Of::past_motion, i, 0, age}, part.a.col(i), part.c.col(i));
         }
-        linear.late.push_back(std::move(part));
+        found.late.push_back(std::move(part));
     }
     return linear;
 }
@@ -141,7 +121,7 @@ int slowest_loop(const Eigen::MatrixXd& jacobian, const SpaceHoverStability& sta
 SpaceHoverStability stability_of(SpaceHoverLoop& loop, const LinearHover& linear, const SpaceHoverTrim& trim,
                                  int joints) {
     SpaceHoverStability stability;
-    const Eigen::MatrixXd jacobian = linear.jacobian();
+    const Eigen::MatrixXd jacobian = simulation::with_past(linear.loops.a, linear.loops.late);
     simulation::find_modes(jacobian, loop.tick_s(), stability);
     if (std::isfinite(stability.spectral_radius)) {
         stability.slowest_loop = slowest_loop(jacobian, stability, loop.tick_s(), trim.motion.attitude, joints);
@@ -248,9 +228,7 @@ SpaceLoopMargins space_loop_margins(const SpaceRobot& robot, const std::vector<d
         const LinearHover linear = linearised(*loop);
         margins.stability = stability_of(*loop, linear, trim, robot.joints());
         if (margins.stability.spectral_radius < 1 - simulation::radius_slack) {
-            for (Eigen::Index i = 0; i < linear.c.rows(); ++i) {
-                margins.loops.push_back(simulation::margins_of(linear.loop(i), loop->tick_s()));
-            }
+            margins.loops = simulation::margins_of(linear.loops, loop->tick_s());
         } else {
             why = "the loop is unstable, most of all in " + space_loop_name(margins.stability.slowest_loop);
         }

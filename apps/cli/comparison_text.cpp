@@ -112,8 +112,8 @@ std::string errors_text(const ErrorFigures& errors) {
 }
 
 std::string jump_rows(const LogComparison& comparison) {
-    std::string text = table_row(
-        "jumps", "the estimator was reset in flight: the log jumps, not the vehicle. All errors here contain that");
+    std::string text =
+        table_row("jumps", "the log jumps in flight, as by a reset of the estimator. All errors here contain that");
     for (std::size_t i = 0; i < std::min(comparison.jumps.size(), most_shown); ++i) {
         text += table_row("", jump_text(comparison.jumps[i]));
     }

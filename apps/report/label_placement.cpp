@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "downwash/report/planar_geometry.hpp"
 
@@ -50,8 +51,19 @@ bool any_crosses(const std::vector<Ring>& lines, bool are_closed, const Bounds& 
     return std::any_of(lines.begin(), lines.end(), [&](const Ring& line) { return crosses(line, are_closed, box); });
 }
 
-bool covers_area(const std::vector<Ring>& fill, const Bounds& box) {
-    return any_crosses(fill, true, box) || is_inside(fill, middle_of(box));
+/// Lines or rings with the box around them: most of what is drawn is far away.
+struct Extended {
+    const std::vector<Ring>* rings;
+    Bounds bounds;
+
+    [[nodiscard]] bool is_far_from(const Bounds& box) const {
+        return rings->empty() || bounds.x_low_m > box.x_high_m || bounds.x_high_m < box.x_low_m ||
+               bounds.z_low_m > box.z_high_m || bounds.z_high_m < box.z_low_m;
+    }
+};
+
+bool covers_area(const Extended& fill, const Bounds& box) {
+    return !fill.is_far_from(box) && (any_crosses(*fill.rings, true, box) || is_inside(*fill.rings, middle_of(box)));
 }
 
 bool is_loop(const Ring& line) {
@@ -91,7 +103,14 @@ std::pair<PlanePoint, PlanePoint> shortest_line(const Bounds& box, const std::ve
 
 class Placement {
  public:
-    Placement(const std::vector<NamedShape>& shapes, const LabelGround& ground) : shapes_(shapes), ground_(ground) {}
+    Placement(const std::vector<NamedShape>& shapes, const LabelGround& ground) : shapes_(shapes), ground_(ground) {
+        fills_.reserve(shapes.size());
+        edges_.reserve(shapes.size());
+        for (const NamedShape& shape : shapes) {
+            fills_.push_back({&shape.fill, box_of(shape.fill)});
+            edges_.push_back({&shape.edges, box_of(shape.edges)});
+        }
+    }
 
     std::vector<PlacedLabel> place() {
         // Names inside their shapes come first, so that names beside shapes can avoid them.
@@ -120,9 +139,11 @@ class Placement {
 
     /// Whether a box is beside all shapes, on one background on which names may stand.
     [[nodiscard]] bool is_on_ground(const Bounds& box) const {
-        if (std::any_of(shapes_.begin(), shapes_.end(), [&](const NamedShape& shape) {
-                return covers_area(shape.fill, box) || any_crosses(shape.edges, false, box);
-            })) {
+        const auto covers = [&box](const Extended& fill) { return covers_area(fill, box); };
+        const auto crosses_box = [&box](const Extended& edges) {
+            return !edges.is_far_from(box) && any_crosses(*edges.rings, false, box);
+        };
+        if (std::ranges::any_of(fills_, covers) || std::ranges::any_of(edges_, crosses_box)) {
             return false;
         }
         const double step_m = pixels(2);
@@ -161,7 +182,7 @@ class Placement {
 
     [[nodiscard]] bool covers_others(const Bounds& box, std::size_t own) const {
         for (std::size_t i = 0; i < shapes_.size(); ++i) {
-            if (i != own && covers_area(shapes_[i].fill, box)) {
+            if (i != own && covers_area(fills_[i], box)) {
                 return true;
             }
         }
@@ -247,6 +268,7 @@ class Placement {
 
     const std::vector<NamedShape>& shapes_;
     const LabelGround& ground_;
+    std::vector<Extended> fills_, edges_;  ///< of shapes_
     std::vector<PlacedLabel> labels_;
 };
 

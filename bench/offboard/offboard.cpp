@@ -11,11 +11,13 @@
 #include <string_view>
 #include <vector>
 
+#include "../../docs/examples/offboard/obstacles.hpp"
 #include "../../docs/examples/offboard/px4.hpp"
 #include "../../docs/examples/offboard/rehearsal.hpp"
-#include "../replan/answers.hpp"
 #include "../support/measuring.hpp"
-#include "downwash/base/key_error.hpp"
+#include "downwash/base/infinity.hpp"
+#include "downwash/base/parallel.hpp"
+#include "downwash/base/quantile.hpp"
 #include "downwash/simulation/space_world_parameters.hpp"
 
 using namespace downwash;
@@ -29,7 +31,7 @@ constexpr double before_offboard_s = 1.2;
 struct Given {
     std::string file, obstacle;
     double lower_m = 0.05;
-    int missions = 500, plans = 5, tracked = 20;
+    int missions = 500, plans = 5, tracked = 20, threads = 2;
     std::uint64_t iterations = 200;
 };
 
@@ -79,7 +81,7 @@ class Missions {
         if (replans) {
             options.lower = given_.obstacle;
             options.lower_m = given_.lower_m;
-            std::ranges::find(truth.obstacles, given_.obstacle, &Obstacle::name)->center_world_m[2] -= given_.lower_m;
+            box_in(truth, given_.obstacle).center_world_m[2] -= given_.lower_m;
         }
         Streamer streamer(planned.problem, options);
         streamer.adopt(planned.problem, planned.plan);
@@ -127,6 +129,14 @@ void print_plans(const Missions& missions, const Given& given) {
         quantile(durations_s, 1), quantile(speeds_m_s, 0), quantile(speeds_m_s, 1));
 }
 
+/// Missions 0 to count - 1, in this order whatever the number of threads.
+template <class Fly>
+std::vector<Rehearsal> all_of(int count, int threads, const Fly& fly) {
+    std::vector<Rehearsal> all(static_cast<std::size_t>(count));
+    run_parallel(all.size(), threads, [&](std::size_t i) { all[i] = fly(static_cast<int>(i)); });
+    return all;
+}
+
 /// Set-points at 50 Hz of which 2 % are lost, up to 10 ms late.
 double print_tracking(const Missions& missions, const Given& given) {
     fmt::print(
@@ -137,9 +147,10 @@ double print_tracking(const Missions& missions, const Given& given) {
     for (const bool is_nominal : {true, false}) {
         std::vector<double> distances_m;
         int arrived = 0;
-        for (int i = 0; i < given.tracked; ++i) {
-            const std::uint64_t world = is_nominal ? 0 : static_cast<std::uint64_t>(i + 1);
-            const Rehearsal flown = missions.fly(i, {.loss = 0.02, .jitter_s = 0.01}, false, world);
+        for (const Rehearsal& flown : all_of(given.tracked, given.threads, [&](int i) {
+                 const std::uint64_t world = is_nominal ? 0 : static_cast<std::uint64_t>(i + 1);
+                 return missions.fly(i, {.loss = 0.02, .jitter_s = 0.01}, false, world);
+             })) {
             distances_m.push_back(flown.max_distance_m);
             arrived += flown.has_arrived ? 1 : 0;
         }
@@ -150,43 +161,69 @@ double print_tracking(const Missions& missions, const Given& given) {
     return nominal_m;
 }
 
-void run(const Given& given) {
-    const Missions missions(given);
-    print_plans(missions, given);
-    const double nominal_m = print_tracking(missions, given);
+/// What missions came to.
+struct Count {
+    std::array<int, all_outcomes.size()> outcomes{};
+    int missions = 0, hover = 0, failsafe = 0, arrived = 0;
+    double min_clearance_m = infinity;
+
+    void add(const Rehearsal& flown) {
+        ++missions;
+        ++outcomes[static_cast<std::size_t>(flown.outcome)];
+        hover += flown.hovers ? 1 : 0;
+        failsafe += flown.hovers && flown.is_in_failsafe ? 1 : 0;
+        arrived += flown.has_arrived ? 1 : 0;
+        min_clearance_m = std::min(min_clearance_m, flown.min_clearance_m);
+    }
+    [[nodiscard]] int of(Outcome outcome) const { return outcomes[static_cast<std::size_t>(outcome)]; }
+};
+
+/// Missions with faults. @return of all kinds
+Count print_missions(const Missions& missions, const Given& given) {
     fmt::print(
         "\nMissions with faults, each in a world of its own. The link falls silent at a moment drawn evenly from the "
         "flight.\n\n"
         "| the link | missions | hover | of these in failsafe | collision | left the flyable area | unstable | arrived "
         "| least clearance [m] |\n"
         "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n");
-    int hover = 0, touch = 0;
+    Count all;
+    std::string failed;
     const int each = given.missions / static_cast<int>(kinds.size());
     for (std::size_t k = 0; k < kinds.size(); ++k) {
-        std::array<int, all_outcomes.size()> outcomes{};
-        int hovers = 0, failsafe = 0, arrived = 0;
-        double clearance_m = 1e9;
+        const int first = static_cast<int>(k) * each;
+        const auto flights = all_of(each, given.threads, [&](int i) { return missions.fly(first + i, kinds[k]); });
+        Count count;
         for (int i = 0; i < each; ++i) {
-            const Rehearsal flown = missions.fly(static_cast<int>(k) * each + i, kinds[k]);
-            ++outcomes[static_cast<std::size_t>(flown.outcome)];
-            hovers += flown.hovers ? 1 : 0;
-            failsafe += flown.hovers && flown.is_in_failsafe ? 1 : 0;
-            arrived += flown.has_arrived ? 1 : 0;
-            clearance_m = std::min(clearance_m, flown.min_clearance_m);
+            const Rehearsal& flown = flights[static_cast<std::size_t>(i)];
+            count.add(flown);
+            all.add(flown);
+            if (!flown.hovers) {
+                failed += fmt::format("- mission {}, {}: {} after {:.1f} s, least clearance {:.3f} m\n", first + i,
+                                      kinds[k].name, name_of(flown.outcome), flown.duration_s, flown.min_clearance_m);
+            }
         }
-        const auto count = [&](Outcome outcome) { return outcomes[static_cast<std::size_t>(outcome)]; };
-        fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {:.3f} |\n", kinds[k].name, each, hovers, failsafe,
-                   count(Outcome::collision), count(Outcome::left_flyable_area), count(Outcome::unstable), arrived,
-                   clearance_m);
-        hover += hovers;
-        touch += count(Outcome::collision);
+        fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} | {:.3f} |\n", kinds[k].name, each, count.hover,
+                   count.failsafe, count.of(Outcome::collision), count.of(Outcome::left_flyable_area),
+                   count.of(Outcome::unstable), count.arrived, count.min_clearance_m);
     }
-    const int all = each * static_cast<int>(kinds.size());
+    if (!failed.empty()) {
+        fmt::print("\nThose that do not end in a hover:\n\n{}", failed);
+    }
+    return all;
+}
+
+void run(const Given& given) {
+    const Missions missions(given);
+    print_plans(missions, given);
+    const double nominal_m = print_tracking(missions, given);
+    const Count all = print_missions(missions, given);
     fmt::print("\n| bound | found | |\n| --- | --- | --- |\n");
     print_bound("the vehicle within 5 cm of the plan at 50 Hz with 2 % lost, in the nominal world",
                 fmt::format("{:.3f} m", nominal_m), nominal_m < max_distance_m);
-    print_bound("every mission with faults ends in a hover", fmt::format("{} of {}", hover, all), hover == all);
-    print_bound("none touches anything", fmt::format("{} of {}", touch, all), touch == 0);
+    print_bound("every mission with faults ends in a hover", fmt::format("{} of {}", all.hover, all.missions),
+                all.hover == all.missions);
+    const int touch = all.of(Outcome::collision);
+    print_bound("none touches anything", fmt::format("{} of {}", touch, all.missions), touch == 0);
 }
 
 }  // namespace
@@ -199,6 +236,7 @@ int main(int argc, char** argv) {
     program.add_option("--missions", given.missions, "with faults, in all");
     program.add_option("--plans", given.plans, "seeds to plan with");
     program.add_option("--tracked", given.tracked, "flights per world kind without silence");
+    program.add_option("--threads", given.threads, "that fly, on which nothing else depends");
     program.add_option("--iterations", given.iterations, "of the search before a flight; a quarter of it in flight");
     return run_program(program, argc, argv, [&] { run(given); });
 }

@@ -25,10 +25,4 @@ inline double share(const std::vector<double>& values, double limit) {
            static_cast<double>(std::max<std::size_t>(1, values.size()));
 }
 
-/// The value below which a share q of all values is; 0 without any.
-inline double quantile(std::vector<double> values, double q) {
-    std::sort(values.begin(), values.end());
-    return values.empty() ? 0 : values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
-}
-
 }  // namespace downwash::bench

@@ -13,6 +13,7 @@
 
 #include "../support/measuring.hpp"
 #include "answers.hpp"
+#include "downwash/base/quantile.hpp"
 #include "downwash/planner/planner.hpp"
 #include "downwash/planner/solve.hpp"
 #include "downwash/problems/problem_reader.hpp"

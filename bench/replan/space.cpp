@@ -12,6 +12,7 @@
 #include "../support/measuring.hpp"
 #include "answers.hpp"
 #include "downwash/base/key_error.hpp"
+#include "downwash/base/quantile.hpp"
 #include "downwash/planner/planner.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
 

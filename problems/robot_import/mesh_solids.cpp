@@ -134,10 +134,10 @@ std::vector<Points> joined_pieces(std::vector<Points> pieces) {
     const auto both = [&](std::size_t i, std::size_t k) {
         return box_volume(outlines[i].points, outlines[k].points, least_m);
     };
-    std::vector<std::vector<double>> joint(pieces.size(), std::vector<double>(pieces.size(), 0));
+    std::vector<std::vector<double>> together(pieces.size(), std::vector<double>(pieces.size(), 0));
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         for (std::size_t k = 0; k < i; ++k) {
-            joint[i][k] = both(i, k);
+            together[i][k] = both(i, k);
         }
     }
     bool is_forced = false;  // groups that hold much space between them would join all others
@@ -146,8 +146,8 @@ std::vector<Points> joined_pieces(std::vector<Points> pieces) {
         double least_more = std::numeric_limits<double>::infinity();
         for (std::size_t i = 0; i < pieces.size(); ++i) {
             for (std::size_t k = 0; k < i; ++k) {
-                const double apart = outlines[i].volume + outlines[k].volume, more = joint[i][k] - apart;
-                if ((is_forced || joint[i][k] <= little_more * apart) && more < least_more) {
+                const double apart = outlines[i].volume + outlines[k].volume, more = together[i][k] - apart;
+                if ((is_forced || together[i][k] <= little_more * apart) && more < least_more) {
                     least_more = more;
                     one = i;
                     other = k;
@@ -168,13 +168,13 @@ std::vector<Points> joined_pieces(std::vector<Points> pieces) {
         const auto gone = static_cast<std::ptrdiff_t>(one);
         pieces.erase(pieces.begin() + gone);
         outlines.erase(outlines.begin() + gone);
-        joint.erase(joint.begin() + gone);
-        for (std::vector<double>& row : joint) {
+        together.erase(together.begin() + gone);
+        for (std::vector<double>& row : together) {
             row.erase(row.begin() + gone);
         }
         for (std::size_t i = 0; i < pieces.size(); ++i) {
             if (i != other) {
-                joint[std::max(i, other)][std::min(i, other)] = both(i, other);
+                together[std::max(i, other)][std::min(i, other)] = both(i, other);
             }
         }
     }

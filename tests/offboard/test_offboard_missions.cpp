@@ -2,6 +2,7 @@
 #include <downwash/simulation/space_world_parameters.hpp>
 #include <string>
 
+#include "../../docs/examples/offboard/obstacles.hpp"
 #include "../../docs/examples/offboard/px4.hpp"
 #include "../../docs/examples/offboard/rehearsal.hpp"
 #include "../support/repetitions.hpp"
@@ -41,7 +42,7 @@ Rehearsal mission(const LinkFaults& faults, std::uint64_t world, bool replans, u
     if (replans) {
         options.lower = lower;
         options.lower_m = lower_m;
-        std::ranges::find(truth.obstacles, lower, &Obstacle::name)->center_world_m[2] -= lower_m;
+        box_in(truth, lower).center_world_m[2] -= lower_m;
     }
     Streamer streamer(planned.problem, options);
     streamer.adopt(planned.problem, planned.plan);

@@ -72,14 +72,18 @@ def crc_extra(message: Message) -> int:
     return both & 0xFF ^ both >> 8
 
 
+CRC_EXTRAS = {number: crc_extra(message) for number, message in MESSAGES.items()}
+
+
 def frame(sequence: int, system: int, component: int, name: str, **values: Any) -> bytes:
     """The bytes of a frame. Fields that are not given are 0."""
-    message = MESSAGES[IDS[name]]
+    number = IDS[name]
+    message = MESSAGES[number]
     payload = struct.pack(message.format(), *(values.get(field, 0) for field in message.fields))
     payload = payload.rstrip(b"\0") or b"\0"
     body = struct.pack("<BBBBBB", len(payload), 0, 0, sequence % 256, system, component)
-    body += IDS[name].to_bytes(3, "little") + payload
-    return bytes([_START]) + body + checksum(body + bytes([crc_extra(message)])).to_bytes(2, "little")
+    body += number.to_bytes(3, "little") + payload
+    return bytes([_START]) + body + checksum(body + bytes([CRC_EXTRAS[number]])).to_bytes(2, "little")
 
 
 def frames(datagram: bytes) -> Iterator[tuple[str, dict[str, Any]]]:
@@ -87,12 +91,13 @@ def frames(datagram: bytes) -> Iterator[tuple[str, dict[str, Any]]]:
     place = 0
     while (place := datagram.find(_START, place)) >= 0 and place + _HEADER + _CHECKSUM < len(datagram):
         end = place + _HEADER + datagram[place + 1]
-        message = MESSAGES.get(int.from_bytes(datagram[place + 7 : place + 10], "little"))
+        number = int.from_bytes(datagram[place + 7 : place + 10], "little")
+        message = MESSAGES.get(number)
         is_whole = message is not None and datagram[place + 2] == 0 and end + _CHECKSUM <= len(datagram)
         if message is None or not is_whole:
             place += 1
             continue
-        expected = checksum(datagram[place + 1 : end] + bytes([crc_extra(message)]))
+        expected = checksum(datagram[place + 1 : end] + bytes([CRC_EXTRAS[number]]))
         if int.from_bytes(datagram[end : end + _CHECKSUM], "little") != expected:
             place += 1
             continue

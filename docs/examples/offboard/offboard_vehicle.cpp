@@ -226,19 +226,23 @@ void OffboardVehicle::judge() {
     }
 }
 
+std::string OffboardVehicle::heartbeat() {
+    mavlink::Heartbeat heartbeat;
+    heartbeat.custom_mode = mode_;
+    heartbeat.type = mavlink::hexarotor_type;
+    heartbeat.autopilot = mavlink::px4_autopilot;
+    heartbeat.base_mode = mavlink::custom_mode_enabled | mavlink::guided_enabled | mavlink::safety_armed;
+    heartbeat.system_status = outcome_ != Outcome::ok ? mavlink::emergency_state
+                              : is_in_failsafe_       ? mavlink::critical_state
+                                                      : mavlink::active_state;
+    return writer_.frame(heartbeat);
+}
+
 std::string OffboardVehicle::sent() {
     std::string datagram = std::exchange(answers_, {});
     if (time_s() >= next_heartbeat_s_) {
         next_heartbeat_s_ = time_s() + 1;
-        mavlink::Heartbeat heartbeat;
-        heartbeat.custom_mode = mode_;
-        heartbeat.type = mavlink::hexarotor_type;
-        heartbeat.autopilot = mavlink::px4_autopilot;
-        heartbeat.base_mode = mavlink::custom_mode_enabled | mavlink::guided_enabled | mavlink::safety_armed;
-        heartbeat.system_status = outcome_ != Outcome::ok ? mavlink::emergency_state
-                                  : is_in_failsafe_       ? mavlink::critical_state
-                                                          : mavlink::active_state;
-        datagram += writer_.frame(heartbeat);
+        datagram += heartbeat();
     }
     if (is_telemetry_due()) {
         const SpaceMotion now = loop_->motion();

@@ -28,6 +28,8 @@ class OffboardVehicle {
     void take(std::string_view datagram);
     /// What it sends now: at 50 Hz where it is and how it is turned, once a second its heartbeat.
     [[nodiscard]] std::string sent();
+    /// Its heartbeat, which says the mode.
+    [[nodiscard]] std::string heartbeat();
     /// Flies one control tick. Nothing more happens once it has collided or is unstable.
     void tick();
 

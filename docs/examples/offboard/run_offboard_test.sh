@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Flies the simulated vehicle over UDP. A streamer that goes leaves a hover. Given a Python that has the package, a whole flight follows, with
-# a link that loses frames and an obstacle that turns out lower, of the streamer and of stream.py: both say the same. That takes minutes.
+# a link that loses frames and an obstacle that turns out lower, of the streamer and of stream.py: both say the same.
 # Usage: docs/examples/offboard/run_offboard_test.sh VEHICLE STREAM PYTHON|none PROBLEM.yaml OBSTACLE ITERATIONS
 set -euo pipefail
 
@@ -29,7 +29,7 @@ says() {
     grep -qF -- "$2" "$work/$1" || { echo "$1: no '$2'" >&2 && exit 1; }
 }
 
-fly gone 1 --patience 5 -- "$stream" --stop-after 5
+fly gone 1 -- "$stream" --stop-after 5
 says gone.vehicle 'ends in hold, since set-points did not come'
 [[ $python != none ]] || exit 0
 

@@ -1,7 +1,7 @@
 // Plans a flight and streams it to a vehicle under PX4, as MAVLink over UDP. stream.py is the same in Python. Usage:
 // stream PROBLEM.yaml
 //   [--lower OBSTACLE METRES]   it turns out lower in flight: the streamer plans again
-//   [--iterations N]            of each search, which makes a mission repeatable; default: 60 s before a flight, 0.4 s
+//   [--iterations N]            of each search, which makes a mission repeatable; default: 60 s before a flight, 1.2 s
 //   in flight
 //   [--instance N]              adds N to both ports: 14540, on which it listens, and 14580, to which it sends
 //   [--stop-after S]            stops sending that long after offboard mode began, as if it had crashed
@@ -10,10 +10,10 @@
 #include <chrono>
 #include <cstdio>
 #include <exception>
-#include <stdexcept>
 #include <string>
 #include <thread>
 
+#include "command_line.hpp"
 #include "px4.hpp"
 #include "streamer.hpp"
 #include "udp.hpp"
@@ -34,33 +34,13 @@ struct Options {
 
 Options options_of(int count, char** words) {
     Options options;
-    int place = 1;
-    const auto next = [&] {
-        if (place >= count) {
-            throw std::runtime_error("a value is missing");
-        }
-        return std::string(words[place++]);
-    };
-    while (place < count) {
-        const std::string word = next();
-        if (word == "--lower") {
-            options.streamer.lower = next();
-            options.streamer.lower_m = std::stod(next());
-        } else if (word == "--iterations") {
-            options.streamer.max_iterations = std::stoull(next());
-        } else if (word == "--instance") {
-            options.instance = std::stoi(next());
-        } else if (word == "--stop-after") {
-            options.stop_after_s = std::stod(next());
-        } else if (options.problem.empty() && word.rfind("--", 0) != 0) {
-            options.problem = word;
-        } else {
-            throw std::runtime_error("what is " + word + "?");
-        }
-    }
-    if (options.problem.empty()) {
-        throw std::runtime_error("no problem");
-    }
+    StreamerOptions& streamer = options.streamer;
+    options.problem = read_command_line(
+        count, words,
+        {{"--lower", [&](const NextWord& next) { streamer.lower = next(), streamer.lower_m = std::stod(next()); }},
+         {"--iterations", [&](const NextWord& next) { streamer.max_iterations = std::stoull(next()); }},
+         {"--instance", [&](const NextWord& next) { options.instance = std::stoi(next()); }},
+         {"--stop-after", [&](const NextWord& next) { options.stop_after_s = std::stod(next()); }}});
     return options;
 }
 

@@ -6,8 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include <downwash/base/key_error.hpp>
-
+#include "obstacles.hpp"
 #include "px4.hpp"
 
 using namespace downwash;
@@ -22,14 +21,6 @@ constexpr double max_error_m = 0.04;       ///< of PX4's loops along a plan
 constexpr double min_clearance_m = 0.1;    ///< of what is flown in silence
 constexpr double min_speed_m_s = 0.1;
 constexpr double request_period_s = 0.5, heartbeat_period_s = 1;
-
-Obstacle& obstacle_in(SpaceProblem& problem, const std::string& name) {
-    const auto found = std::ranges::find(problem.obstacles, name, &Obstacle::name);
-    if (found == problem.obstacles.end() || !std::holds_alternative<Box>(found->shape)) {
-        throw_input_error("has no box called '" + name + "'", "environment.obstacles");
-    }
-    return *found;
-}
 
 /// From a place to a box whose edges are along the axes [m].
 double distance_m(const std::array<double, 3>& at_m, const Obstacle& box) {
@@ -92,7 +83,7 @@ mavlink::CommandLong mode_request(std::uint32_t mode) {
 
 Streamer::Streamer(const SpaceProblem& drawing, const StreamerOptions& options) : options_(options), drawing_(drawing) {
     if (!options_.lower.empty()) {
-        obstacle_in(drawing_, options_.lower);
+        box_in(drawing_, options_.lower);
     }
 }
 
@@ -210,12 +201,12 @@ void Streamer::look_around() {
     if (options_.lower.empty() || knows_) {
         return;
     }
-    Obstacle lower = obstacle_in(drawing_, options_.lower);
+    Obstacle lower = box_in(drawing_, options_.lower);
     lower.center_world_m[2] -= options_.lower_m;
     if (distance_m(at_m_, lower) < sight_m) {
         say(text("%s is %.3f m lower than on the drawing", options_.lower.c_str(), options_.lower_m));
         knows_ = true;
-        obstacle_in(believed_, options_.lower) = lower;
+        box_in(believed_, options_.lower) = lower;
         new_plan_from_ = tick_ + ticks(lead_s);
         answer_ = std::async(std::launch::async, [this] { return replan(); });
     }
@@ -224,7 +215,7 @@ void Streamer::look_around() {
 /// What to fly from new_plan_from_ on: the best answer to which there is no objection. A stop is always one.
 SpaceAnswer Streamer::replan() {
     SpaceSceneChange change;
-    change.put = {obstacle_in(believed_, options_.lower)};
+    change.put = {box_in(believed_, options_.lower)};
     SpaceReplanOptions how;
     how.max_iterations = options_.max_iterations;
     if (!how.max_iterations) {

@@ -5,7 +5,6 @@
 //   delay,
 //                               silence from that second on; seed of their luck
 //   [--lock-step]               the clock waits for a set-point with the time of the last telemetry; default: real time
-//   [--patience S]              it waits so long for that; default: 120
 //   [--instance N]              adds N to both ports: 14580, on which it listens, and 14540, to which it sends
 //   [--log FILE.csv]            writes the true flight
 // Exit codes: 0 it ends in a hover, 1 it does not, 2 bad input, 3 nobody came.
@@ -18,14 +17,14 @@
 #include <exception>
 #include <fstream>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <thread>
 
-#include <downwash/base/key_error.hpp>
 #include <downwash/simulation/space_world_parameters.hpp>
 
+#include "command_line.hpp"
 #include "faulty_link.hpp"
+#include "obstacles.hpp"
 #include "offboard_vehicle.hpp"
 #include "px4.hpp"
 #include "udp.hpp"
@@ -34,7 +33,8 @@ using namespace downwash;
 
 namespace {
 
-constexpr double wait_for_somebody_s = 120;  ///< who may plan first
+constexpr double wait_for_somebody_s = 120;  ///< who may plan first, or again
+constexpr double heartbeat_period_s = 1;     ///< on the wall, while the clock of lock step stands still
 constexpr double hover_at_end_s = 5;
 
 struct Options {
@@ -45,61 +45,29 @@ struct Options {
     unsigned seed = 1;
     int instance = 0;
     bool is_lock_step = false;
-    double patience_s = wait_for_somebody_s;  ///< for set-points in lock-step
 };
 
 Options options_of(int count, char** words) {
     Options options;
-    int place = 1;
-    const auto next = [&] {
-        if (place >= count) {
-            throw std::runtime_error("a value is missing");
-        }
-        return std::string(words[place++]);
-    };
-    while (place < count) {
-        const std::string word = next();
-        if (word == "--lower") {
-            options.lower = next();
-            options.lower_m = std::stod(next());
-        } else if (word == "--world") {
-            options.world = std::stoull(next());
-        } else if (word == "--loss") {
-            options.faults.loss = std::stod(next());
-        } else if (word == "--jitter") {
-            options.faults.jitter_s = std::stod(next());
-        } else if (word == "--silent") {
-            options.faults.silent_from_s = std::stod(next());
-        } else if (word == "--seed") {
-            options.seed = static_cast<unsigned>(std::stoul(next()));
-        } else if (word == "--patience") {
-            options.patience_s = std::stod(next());
-        } else if (word == "--instance") {
-            options.instance = std::stoi(next());
-        } else if (word == "--log") {
-            options.log = next();
-        } else if (word == "--lock-step") {
-            options.is_lock_step = true;
-        } else if (options.problem.empty() && word.rfind("--", 0) != 0) {
-            options.problem = word;
-        } else {
-            throw std::runtime_error("what is " + word + "?");
-        }
-    }
-    if (options.problem.empty()) {
-        throw std::runtime_error("no problem");
-    }
+    LinkFaults& faults = options.faults;
+    options.problem = read_command_line(
+        count, words,
+        {{"--lower", [&](const NextWord& next) { options.lower = next(), options.lower_m = std::stod(next()); }},
+         {"--world", [&](const NextWord& next) { options.world = std::stoull(next()); }},
+         {"--loss", [&](const NextWord& next) { faults.loss = std::stod(next()); }},
+         {"--jitter", [&](const NextWord& next) { faults.jitter_s = std::stod(next()); }},
+         {"--silent", [&](const NextWord& next) { faults.silent_from_s = std::stod(next()); }},
+         {"--seed", [&](const NextWord& next) { options.seed = static_cast<unsigned>(std::stoul(next())); }},
+         {"--instance", [&](const NextWord& next) { options.instance = std::stoi(next()); }},
+         {"--log", [&](const NextWord& next) { options.log = next(); }},
+         {"--lock-step", [&](const NextWord&) { options.is_lock_step = true; }}});
     return options;
 }
 
 SpaceProblem truth_of(const Options& options) {
     SpaceProblem problem = read_px4_problem(options.problem);
     if (!options.lower.empty()) {
-        const auto found = std::ranges::find(problem.obstacles, options.lower, &Obstacle::name);
-        if (found == problem.obstacles.end()) {
-            throw_input_error("has no obstacle called '" + options.lower + "'", "environment.obstacles");
-        }
-        found->center_world_m[2] -= options.lower_m;
+        box_in(problem, options.lower).center_world_m[2] -= options.lower_m;
     }
     return problem;
 }
@@ -167,9 +135,9 @@ class Simulation {
     void receive() {
         if (options_.is_lock_step) {
             while (vehicle_.is_telemetry_due() && !is_alone_) {
-                const auto datagram = socket_.receive(options_.patience_s);
-                is_alone_ = !datagram || datagram->empty();
-                if (!is_alone_) {
+                const auto datagram = next_in_lock_step();
+                is_alone_ = !datagram;
+                if (datagram) {
                     link_.put(vehicle_.time_s(), *datagram);
                     if (is_answer(*datagram, vehicle_.time_s())) {
                         return;
@@ -184,6 +152,18 @@ class Simulation {
             }
         }
         std::this_thread::sleep_until(started_ + std::chrono::duration<double>(vehicle_.time_s()));
+    }
+
+    /// The next datagram; nothing if nobody is there any more. Who has gone may have read the last telemetry, so the
+    /// system only tells of it when something else is sent: a heartbeat, which asks for no answer.
+    std::optional<std::string> next_in_lock_step() {
+        for (double waited_s = 0; waited_s < wait_for_somebody_s; waited_s += heartbeat_period_s) {
+            if (const auto datagram = socket_.receive(heartbeat_period_s)) {
+                return datagram->empty() ? std::nullopt : datagram;
+            }
+            socket_.send(vehicle_.heartbeat());
+        }
+        return std::nullopt;
     }
 
     /// Whether it is lost, or has hovered for a while after it was flown.

@@ -56,7 +56,7 @@ function make_jumps({jumps, tracking_apart_from_jumps: apart}) {
     return h(
         "div", {class: "jumps"},
         h("p", null,
-          "The estimator was reset in flight: the log jumps, not the vehicle. All errors on this page contain that. Without two " +
+          "In flight the log jumps, as by a reset of the estimator. All errors on this page contain that. Without two " +
               `seconds behind each jump, the vehicle was ${millimetres(apart.rms_m.distance)} from its reference, ${
                   millimetres(apart.max_m.distance)} at most.`),
         h("ul", null,
