@@ -47,9 +47,13 @@ SpacePlan plan_of(const LoggedFlight& flight, const SpaceRobot& robot) {
         SpaceKnot knot{static_cast<std::int64_t>(k) * ticks, points[k]};
         if (k > 0 && k + 1 < points.size()) {
             for (int axis = 0; axis < space_axes<max_joints>; ++axis) {
-                const double before = points[k - 1].position[axis], after = points[k + 1].position[axis];
-                knot.point.velocity[axis] = (after - before) / (2 * step_s);
-                knot.point.acceleration[axis] = (after - 2 * points[k].position[axis] + before) / (step_s * step_s);
+                const auto at = [&](std::size_t i) { return points[std::min(i, points.size() - 1)].position[axis]; };
+                // Of fourth order: what is wrong by 4 cm/s moves a vehicle by centimetres.
+                const double far_before = at(k > 1 ? k - 2 : 0), before = at(k - 1), after = at(k + 1),
+                             far_after = at(k + 2);
+                knot.point.velocity[axis] = (8 * (after - before) - (far_after - far_before)) / (12 * step_s);
+                knot.point.acceleration[axis] =
+                    (16 * (after + before) - (far_after + far_before) - 30 * at(k)) / (12 * step_s * step_s);
             }
         }
         plan.reference.push_back(knot);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -70,6 +71,7 @@ struct Identification {
     std::vector<IdentifiedRatio> ratios;
     std::vector<IdentifiedWind> winds;  ///< one for each flight
     std::vector<IdentifiedNoise> noise;
+    std::array<double, 3> accelerations{};
     std::vector<WeakDirection> weak;
     std::vector<std::string> left_out;  ///< what cannot be identified from such logs at all, with the reason
     double duration_s = 0;

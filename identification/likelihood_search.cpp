@@ -38,15 +38,6 @@ constexpr double small_move = 0.1;
 /// Distances in radii at which K of a surface is identified.
 const std::vector<double> node_distances{0.5, 0.75, 1, 1.5, 2, 3, 4, 6};
 
-/// The noise before a flight says anything of it. Accelerations stand for numbers that are not found yet.
-Noise first_noise(const Uncertainty& uncertainty) {
-    const auto variance = [](double sd, double least) { return std::pow(std::max(sd, least), 2); };
-    return {
-        {variance(uncertainty.position_noise_m.high, 1e-3), 1e-6, 1e-6,
-         variance(uncertainty.velocity_noise_m_s.high, 1e-3), variance(uncertainty.gyro_noise_rad_s.high, 1e-3), 1e-4},
-        {0.01, 1, 100}};
-}
-
 /// The innovations of a flight as Ceres asks for them; slopes are differences.
 class FlightCost : public ceres::CostFunction {
  public:
@@ -98,7 +89,6 @@ class Search {
  public:
     Search(const SpaceRobot& robot, const std::vector<LoggedFlight>& flights, const IdentifySettings& settings)
         : surface_(nodes_of(settings)), sought_(robot, settings, surface_), vehicle_(vehicle_size(), 0.0) {
-        const Uncertainty known = robot.uncertainty.value_or(Uncertainty{});
         FilterSettings filter;
         filter.gust_m_s = settings.air.gust_m_s.high;
         // Gusts of the default lengths pass a vehicle at 1 m/s, as those of worlds do.
@@ -108,7 +98,15 @@ class Search {
         for (const LoggedFlight& flight : flights) {
             flights_.push_back({&flight, make_flight_filter(robot, flight, filter), {0, 0, 0}});
         }
-        noise_.fill({first_noise(known), robot.joints() > 0});
+        for (const bool of_true_motion : {false, true}) {
+            std::vector<const LoggedFlight*> group;
+            for (const LoggedFlight& flight : flights) {
+                if (flight.is_true_motion == of_true_motion) {
+                    group.push_back(&flight);
+                }
+            }
+            noise_[of_true_motion ? 1 : 0] = {first_noise(group, robot.joints()), robot.joints() > 0};
+        }
     }
 
     /// Rounds of gains, noise and numbers until the numbers stay.
@@ -152,6 +150,7 @@ class Search {
     [[nodiscard]] const PerChannel& counts(bool of_true_motion) const {
         return noise_[of_true_motion ? 1 : 0].counts();
     }
+    [[nodiscard]] std::array<double, 3> accelerations() const { return noise_[0].noise().accelerations; }
     [[nodiscard]] int rounds() const { return rounds_; }
     [[nodiscard]] bool is_converged() const { return is_converged_; }
 
@@ -307,6 +306,7 @@ Identification identify(const SpaceRobot& robot, const std::vector<LoggedFlight>
     found.iterations = search.rounds();
     found.is_converged = search.is_converged();
     found.fit = search.fit();
+    found.accelerations = search.accelerations();
     for (const LoggedFlight& flight : used) {
         found.duration_s += flight.ticks.back().t_s - flight.ticks.front().t_s;
     }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "downwash/base/vector3.hpp"
+#include "downwash/identification/vehicle_estimate.hpp"
+
 namespace downwash::identification {
 namespace {
 
@@ -30,11 +33,73 @@ bool is_fine(double factor) {
     return factor < fine && factor > 1 / fine;
 }
 
+/// Mean of the squared third differences of white noise, over its variance: 1 + 9 + 9 + 1.
+constexpr double of_third_difference = 20;
+
+Vector3 turn_between(const std::array<double, 4>& from, const std::array<double, 4>& to) {
+    const Eigen::Quaterniond a(from[0], from[1], from[2], from[3]), b(to[0], to[1], to[2], to[3]);
+    const Eigen::Vector3d turn = vector_of_turn(a.conjugate() * b);
+    return {turn.x(), turn.y(), turn.z()};
+}
+
+/// Adds the squared third differences of one channel from four ticks in a row.
+template <class Difference>
+void add_third(const LoggedTick* ticks, std::size_t count, const Difference& difference, double& sum, double& terms) {
+    const auto first = difference(ticks[0].seen, ticks[1].seen), second = difference(ticks[1].seen, ticks[2].seen),
+               third = difference(ticks[2].seen, ticks[3].seen);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double value = first[i] - 2 * second[i] + third[i];
+        sum += value * value;
+        terms += 1;
+    }
+}
+
 }  // namespace
 
-double NoiseSearch::step(std::size_t acceleration, const Pass& pass, FilterPass& here) {
+Noise first_noise(const std::vector<const LoggedFlight*>& flights, int joints) {
+    PerChannel sums{}, terms{};
+    for (const LoggedFlight* flight : flights) {
+        for (std::size_t i = 0; i + 3 < flight->ticks.size(); ++i) {
+            const LoggedTick* ticks = &flight->ticks[i];
+            const auto add = [&](Channel channel, std::size_t count, const auto& difference) {
+                const auto k = static_cast<std::size_t>(channel);
+                add_third(ticks, count, difference, sums[k], terms[k]);
+            };
+            const auto of = [](auto member) {
+                return [member](const SpaceMotion& from, const SpaceMotion& to) { return to.*member - from.*member; };
+            };
+            const auto of_joints = [](auto member) {
+                return [member](const SpaceMotion& from, const SpaceMotion& to) {
+                    auto by = to.*member;
+                    for (std::size_t j = 0; j < by.size(); ++j) {
+                        by[j] -= (from.*member)[j];
+                    }
+                    return by;
+                };
+            };
+            add(Channel::position, 3, of(&SpaceMotion::position_m));
+            add(Channel::attitude, 3, [](const SpaceMotion& from, const SpaceMotion& to) {
+                return turn_between(from.attitude, to.attitude);
+            });
+            add(Channel::velocity, 3, of(&SpaceMotion::velocity_m_s));
+            add(Channel::body_rates, 3, of(&SpaceMotion::body_rates_rad_s));
+            const auto count = static_cast<std::size_t>(joints);
+            add(Channel::joints, count, of_joints(&SpaceMotion::joints_rad));
+            add(Channel::joint_rates, count, of_joints(&SpaceMotion::joint_rates_rad_s));
+        }
+    }
+    Noise noise{{}, {0.01, 1, 100}};
+    for (std::size_t k = 0; k < channel_count; ++k) {
+        noise.measured[k] = std::max(terms[k] > 0 ? sums[k] / (terms[k] * of_third_difference) : 0, least_measured);
+    }
+    return noise;
+}
+
+double NoiseSearch::step(std::size_t acceleration, bool holds_measured, const Pass& pass, FilterPass& here) {
     Noise next = noise_;
-    next.measured = better_measured(noise_.measured, here);
+    if (!holds_measured) {
+        next.measured = better_measured(noise_.measured, here);
+    }
     if (acceleration < counted_) {
         double& variance = next.accelerations[acceleration];
         variance = std::clamp(variance * factors_[acceleration], least_acceleration, most_acceleration);
@@ -54,6 +119,17 @@ double NoiseSearch::step(std::size_t acceleration, const Pass& pass, FilterPass&
     return fall;
 }
 
+void NoiseSearch::descend(bool holds_measured, const Pass& pass, FilterPass& here) {
+    const std::size_t kinds = counted_ + (holds_measured ? 0 : 1);  // the last one: only what is measured
+    std::size_t still = 0;
+    for (std::size_t i = 0; i < max_steps && still < kinds; ++i) {
+        const std::size_t kind = holds_measured ? i % kinds : (i + counted_) % kinds;
+        const bool was_fine = kind == counted_ || is_fine(factors_[kind]);
+        const double fall = step(kind, holds_measured, pass, here);
+        still = fall < small_fall && was_fine ? still + 1 : 0;
+    }
+}
+
 std::optional<double> NoiseSearch::lower(const Pass& pass) {
     FilterPass here = pass(noise_);
     if (!here.is_finite) {
@@ -61,14 +137,10 @@ std::optional<double> NoiseSearch::lower(const Pass& pass) {
     }
     has_its_gains_ = true;
     const double before = here.cost;
-    const std::size_t kinds = counted_ + 1;  // the last one: only what is measured
-    std::size_t still = 0;
-    for (std::size_t i = 0; i < max_steps && still < kinds; ++i) {
-        const std::size_t kind = (i + counted_) % kinds;
-        const bool was_fine = kind == counted_ || is_fine(factors_[kind]);
-        const double fall = step(kind, pass, here);
-        still = fall < small_fall && was_fine ? still + 1 : 0;
-    }
+    // Both at once can end where accelerations explain what is noise of the sensors, a maximum of the likelihood that is
+    // not the greatest.
+    descend(true, pass, here);
+    descend(false, pass, here);
     if (!has_its_gains_) {
         here = pass(noise_);
     }

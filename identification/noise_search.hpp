@@ -3,13 +3,19 @@
 #include <array>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "downwash/identification/flight_filter.hpp"
+#include "downwash/identification/logged_flight.hpp"
 #include "downwash/identification/trial.hpp"
 
 // Private to identification/.
 
 namespace downwash::identification {
+
+/// The noise before a search: of what is measured, what the third differences of neighbouring ticks have if the motion is
+/// smooth; of accelerations, room for numbers that are not found yet.
+[[nodiscard]] Noise first_noise(const std::vector<const LoggedFlight*>& flights, int joints);
 
 /// Searches the noise that makes logs most likely: variances of what is measured by a fixed point, those of unmodelled
 /// accelerations step by step.
@@ -30,7 +36,9 @@ class NoiseSearch {
 
  private:
     /// One step with an acceleration, or with what is measured alone. @return by how much the cost fell
-    double step(std::size_t acceleration, const Pass& pass, FilterPass& here);
+    double step(std::size_t acceleration, bool holds_measured, const Pass& pass, FilterPass& here);
+    /// Steps with each number in turn until none lowers the cost any more.
+    void descend(bool holds_measured, const Pass& pass, FilterPass& here);
 
     Noise noise_;
     std::size_t counted_ = 3;  ///< accelerations that there are

@@ -132,7 +132,7 @@ std::optional<LoggedFlight> flown_log(const SpaceRobot& robot, const Options& op
 }
 
 Studied study(const SpaceRobot& robot, const Options& options, std::uint64_t index) {
-    Studied studied{vehicle_of(robot, options.seed, index), {}, {}};
+    Studied studied{vehicle_of(robot, options.seed, index), {}, {}, {}, {}};
     test::Random random(simulation::mixed(options.seed + 77) ^ index);
     std::vector<LoggedFlight> logs;
     for (int i = 0; i < options.flights; ++i) {
@@ -369,6 +369,9 @@ void measure(const Options& options) {
             for (const IdentifiedNoise& noise : studied.found->noise) {
                 fmt::print("<!-- {} {} {} -->\n", noise.name, noise.sd, noise.sd_of_sd);
             }
+            fmt::print("<!-- truth {} {} {} accelerations {} {} {} -->\n", studied.vehicle.world.position_noise_m,
+                       studied.vehicle.world.velocity_noise_m_s, studied.vehicle.world.gyro_noise_rad_s,
+                       studied.found->accelerations[0], studied.found->accelerations[1], studied.found->accelerations[2]);
             fmt::print("<!-- rounds {} fit {} -->\n", studied.found->iterations, studied.found->fit);
             if (studied.after) {
                 const HeldBackCoverage &before = *studied.before, &after = *studied.after;
