@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "downwash/base/portable_math.hpp"
@@ -78,6 +79,16 @@ std::vector<Vector3> places_of(const SpaceFlight& flown) {
     return places_m;
 }
 
+/// Between which values one more of the same kind lies with 95 %, whatever their distribution: its rank among n others
+/// is each of n + 1 with the same probability. @pre values are sorted; fewer than 39 hold less
+std::pair<double, double> prediction_interval(const std::vector<double>& values) {
+    constexpr double outside = 0.025;  // on each side
+    const auto count = static_cast<double>(values.size());
+    const double rank = std::max(0.0, outside * (count + 1) - 1);
+    const double share = values.size() > 1 ? std::min(0.5, rank / (count - 1)) : 0.5;
+    return {quantile_of_sorted(values, share), quantile_of_sorted(values, 1 - share)};
+}
+
 /// Places that the controller of a world sees: late, biased and noisy, as logs have them.
 std::vector<Vector3> seen_places_of(const SpaceFlight& flown, const SpaceRobot& robot, const SpaceWorld& world) {
     const std::vector<Vector3> true_m = places_of(flown);
@@ -141,7 +152,7 @@ HeldBackCoverage held_back_coverage(const SpaceRobot& robot, const LoggedFlight&
                 values.push_back(places_m[tick][axis]);
             }
             std::ranges::sort(values);
-            const double low_m = quantile_of_sorted(values, 0.025), high_m = quantile_of_sorted(values, 0.975);
+            const auto [low_m, high_m] = prediction_interval(values);
             const bool is_within = low_m <= logged_m[axis] && logged_m[axis] <= high_m;
             coverage.share_within[axis] += (is_within ? 1.0 : 0.0) / static_cast<double>(ticks);
             coverage.width_m[axis] += (high_m - low_m) / static_cast<double>(ticks);
