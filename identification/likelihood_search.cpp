@@ -65,7 +65,7 @@ class FlightCost : public ceres::CostFunction {
                 std::vector<double>(parameters[0], parameters[0] + sought_.of_vehicle()),
                 std::vector<double>(parameters[1], parameters[1] + SoughtNumbers::of_wind())};
             for (Index i = 0; i < columns; ++i) {
-                constexpr double step = 1e-4;  // of a standard deviation of what was known before
+                constexpr double step = 1e-5;  // of a standard deviation of what was known before
                 double& moved = at[static_cast<std::size_t>(block)][static_cast<std::size_t>(i)];
                 const double from = std::exchange(moved, moved + step);
                 VectorXd there(count);
