@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "downwash/identification/gust_model.hpp"
 #include "downwash/identification/logged_flight.hpp"
 #include "downwash/identification/surface_nodes.hpp"
 #include "downwash/identification/trial.hpp"
@@ -55,9 +56,7 @@ class FlightFilter {
 
 /// How flights are filtered.
 struct FilterSettings {
-    double gust_m_s = 0;      ///< standard deviation of gusts
-    double gust_level_s = 1;  ///< how long a gust along the ground lasts [s]
-    double gust_up_s = 1;     ///< the same upward
+    GustSettings gusts;
     double lead_s = 0.1;      ///< what of the log comes before the first innovation: the greatest delay
     SurfaceNodes surface;     ///< nowhere: free air
 };

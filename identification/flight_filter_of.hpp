@@ -18,7 +18,7 @@ class FlightFilterOf final : public FlightFilter {
     FlightFilterOf(const SpaceRobot& robot, const LoggedFlight& flight, const FilterSettings& settings)
         : settings_(settings),
           way_(robot, flight, settings),
-          states_(measured + way_.lags() + 3),
+          states_(measured + way_.lags() + GustModel::size),
           slopes_(way_.steps()),
           gains_(way_.steps(), Eigen::MatrixXd(states_, measured)),
           scales_(way_.steps(), Eigen::VectorXd(measured)) {}
@@ -26,7 +26,10 @@ class FlightFilterOf final : public FlightFilter {
     [[nodiscard]] Eigen::Index size() const override { return static_cast<Eigen::Index>(way_.steps()) * measured; }
     [[nodiscard]] Eigen::Index per_tick() const override { return measured; }
 
-    FilterPass linearise(const Trial& trial, const Noise& noise) override { return pass(trial, noise, true); }
+    FilterPass linearise(const Trial& trial, const Noise& noise) override {
+        way_.blow(vector_of(trial.world.wind_m_s));
+        return pass(trial, noise, true);
+    }
     FilterPass pass(const Trial& trial, const Noise& noise) override { return pass(trial, noise, false); }
 
     [[nodiscard]] bool innovations(const Trial& trial, Eigen::Ref<Eigen::VectorXd> out) const override {
@@ -53,7 +56,7 @@ class FlightFilterOf final : public FlightFilter {
 
  private:
     static constexpr Eigen::Index measured = measured_numbers<n>;
-    static constexpr Eigen::Index most_states = measured + max_rotors + 3;
+    static constexpr Eigen::Index most_states = measured + max_rotors + GustModel::size;
     using Estimate = VehicleEstimate<n>;
     using Model = TrialModel<n>;
     using States = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most_states, 1>;
@@ -112,8 +115,10 @@ class FlightFilterOf final : public FlightFilter {
         }
         constexpr double thrust_error = 0.05;  // of a lag that has run over the lead
         variances.segment(measured, way_.lags()).setConstant(std::pow(thrust_error * way_.mean_command_n(), 2));
-        variances.tail(3).setConstant(settings_.gust_m_s * settings_.gust_m_s);
-        return variances.asDiagonal();
+        variances.template tail<GustModel::size>().setZero();
+        StateMatrix covariance = variances.asDiagonal();
+        covariance.template bottomRightCorner<GustModel::size, GustModel::size>() = GustModel::covariance();
+        return covariance;
     }
 
     /// The covariance one tick later, with what gusts and unmodelled accelerations add.
@@ -123,11 +128,7 @@ class FlightFilterOf final : public FlightFilter {
         covariance.noalias() = half * slope.transpose();
         covariance = (0.5 * (covariance + covariance.transpose())).eval();
         const double dt_s = way_.step_s(row);
-        const Eigen::Vector3d kept = way_.gust_decay(dt_s);
-        for (Eigen::Index i = 0; i < 3; ++i) {
-            covariance(states_ - 3 + i, states_ - 3 + i) +=
-                std::pow(settings_.gust_m_s, 2) * (1 - kept[i] * kept[i]);
-        }
+        covariance.template bottomRightCorner<GustModel::size, GustModel::size>() += way_.gusts().added(dt_s);
         for (Eigen::Index j = 6 + n; j < measured; ++j) {
             const std::size_t which = j < 9 + n ? 0 : j < 12 + n ? 1 : 2;
             covariance(j, j) += noise.accelerations[which] * dt_s;

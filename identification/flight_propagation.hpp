@@ -23,6 +23,7 @@ class FlightPropagation {
     FlightPropagation(const SpaceRobot& robot, const LoggedFlight& flight, const FilterSettings& settings)
         : flight_(flight),
           settings_(settings),
+          gusts_(settings.gusts, Eigen::Vector3d::Zero()),
           rotors_(static_cast<int>(robot.plant.rotors.size())),
           lags_(robot.plant.time_constant_s > 0 ? rotors_ : 0),
           streams_(space_slipstreams_of(robot.plant, robot.rotor_radius_m)),
@@ -54,7 +55,7 @@ class FlightPropagation {
     /// The vehicle as it was seen at the first tick, with thrusts that followed the commands before.
     [[nodiscard]] Estimate start(const Model& model) const {
         Estimate at{};
-        at.gust_m_s.setZero();
+        at.gust.setZero();
         at.seen.setZero();
         at.vehicle = vehicle_seen(model, first_);
         const auto& ticks = flight_.ticks;
@@ -83,7 +84,7 @@ class FlightPropagation {
         }
         double ratio[max_rotors];
         weights_.find_ratios(model.surface_effects, row, ratio);
-        const LoggedSpace around = surroundings(model, model.wind_m_s + from.gust_m_s, ratio);
+        const LoggedSpace around = surroundings(model, model.wind_m_s + gusts_.gust_m_s(from.gust), ratio);
         Estimate at = from;
         shift(model.center_of_mass_m, 1, at.vehicle);
         dynamics::SpaceState<double, n> before = at.vehicle, ahead = at.vehicle;
@@ -114,15 +115,13 @@ class FlightPropagation {
             shift(model.center_of_mass_m, -1, ahead);
             at.seen = seen_between<n>(before, ahead, share_before, at.vehicle);
         }
-        at.gust_m_s = gust_decay(step_s(row)).cwiseProduct(from.gust_m_s);
+        at.gust = gusts_.after(from.gust, step_s(row));
         return at;
     }
 
-    /// What of a gust is left after a time.
-    [[nodiscard]] Eigen::Vector3d gust_decay(double dt_s) const {
-        const double level = std::exp(-dt_s / settings_.gust_level_s);
-        return {level, level, std::exp(-dt_s / settings_.gust_up_s)};
-    }
+    [[nodiscard]] const GustModel& gusts() const { return gusts_; }
+    /// Gusts pass along with this wind from now on.
+    void blow(const Eigen::Vector3d& steady_wind_m_s) { gusts_ = GustModel(settings_.gusts, steady_wind_m_s); }
 
     /// What was seen at a tick less what an estimate expects to be seen, as a difference of estimates.
     [[nodiscard]] Eigen::VectorXd innovation(const Model& model, const Estimate& at, std::size_t row) const {
@@ -177,6 +176,7 @@ class FlightPropagation {
 
     const LoggedFlight& flight_;
     FilterSettings settings_;
+    GustModel gusts_;
     bool is_at_ticks_ = false;  ///< whether rows are the ticks of the controller
     int rotors_;
     Eigen::Index lags_;

@@ -90,10 +90,7 @@ class Search {
     Search(const SpaceRobot& robot, const std::vector<LoggedFlight>& flights, const IdentifySettings& settings)
         : surface_(nodes_of(settings)), sought_(robot, settings, surface_), vehicle_(vehicle_size(), 0.0) {
         FilterSettings filter;
-        filter.gust_m_s = settings.air.gust_m_s.high;
-        // Gusts of the default lengths pass a vehicle at 1 m/s, as those of worlds do.
-        filter.gust_level_s = settings.air.gust_length_x_m;
-        filter.gust_up_s = settings.air.gust_length_z_m;
+        filter.gusts = {settings.air.gust_m_s.high, settings.air.gust_length_x_m, settings.air.gust_length_z_m};
         filter.surface = surface_;
         for (const LoggedFlight& flight : flights) {
             flights_.push_back({&flight, make_flight_filter(robot, flight, filter), {0, 0, 0}});
@@ -182,14 +179,18 @@ class Search {
 
     /// Linearises the motions, unless the numbers are still where they were when that was last done.
     void linearise() {
+        std::vector<double> here = vehicle_;
+        for (const Flight& flight : flights_) {
+            here.insert(here.end(), flight.wind.begin(), flight.wind.end());
+        }
         double moved = linearised_at_.empty() ? infinity : 0;
         for (std::size_t i = 0; i < linearised_at_.size(); ++i) {
-            moved = std::max(moved, std::abs(vehicle_[i] - linearised_at_[i]));
+            moved = std::max(moved, std::abs(here[i] - linearised_at_[i]));
         }
         if (moved < small_move) {
             return;
         }
-        linearised_at_ = vehicle_;
+        linearised_at_ = std::move(here);
         for (const std::size_t group : {0U, 1U}) {
             for_flights(group, [&](FlightFilter& filter, const Trial& trial) {
                 filter.linearise(trial, noise_[group].noise());

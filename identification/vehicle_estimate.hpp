@@ -7,6 +7,7 @@
 
 #include "downwash/base/vector3.hpp"
 #include "downwash/dynamics/space_step.hpp"
+#include "downwash/identification/gust_model.hpp"
 #include "downwash/identification/trial.hpp"
 
 // Private to identification/: what a filter believes of a vehicle with n joints, and differences of that.
@@ -62,7 +63,7 @@ inline void put_attitude(const Eigen::Quaterniond& attitude, double q[7]) {
 template <int n>
 struct VehicleEstimate {
     dynamics::SpaceState<double, n> vehicle;
-    Eigen::Vector3d gust_m_s;
+    GustModel::State gust;
     /// What is seen of the vehicle less the vehicle: controllers see it linear between two ticks (docs/model.md 9).
     Eigen::Matrix<double, measured_numbers<n>, 1> seen;
 };
@@ -98,17 +99,17 @@ Eigen::Matrix<double, measured_numbers<n>, 1> motion_between(const dynamics::Spa
     return by;
 }
 
-/// By what one estimate differs from another: motion, then lagged thrusts, then the gust along three axes.
+/// By what one estimate differs from another: motion, then lagged thrusts, then the gust.
 /// @param lags lagged thrusts
 template <int n>
 Eigen::VectorXd difference(const VehicleEstimate<n>& to, const VehicleEstimate<n>& from, Eigen::Index lags) {
     constexpr Eigen::Index measured = measured_numbers<n>;
-    Eigen::VectorXd by(measured + lags + 3);
+    Eigen::VectorXd by(measured + lags + GustModel::size);
     by.head(measured) = motion_between<n>(to.vehicle, from.vehicle);
     for (Eigen::Index i = 0; i < lags; ++i) {
         by[measured + i] = to.vehicle.thrust_n[i] - from.vehicle.thrust_n[i];
     }
-    by.tail(3) = to.gust_m_s - from.gust_m_s;
+    by.tail<GustModel::size>() = to.gust - from.gust;
     return by;
 }
 
@@ -130,7 +131,7 @@ VehicleEstimate<n> corrected(const VehicleEstimate<n>& from, const Eigen::Vector
     for (Eigen::Index i = 0; i < lags; ++i) {
         vehicle.thrust_n[i] += by[measured_numbers<n> + i];
     }
-    at.gust_m_s += by.tail(3);
+    at.gust += by.tail<GustModel::size>();
     return at;
 }
 
