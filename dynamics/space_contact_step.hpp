@@ -86,6 +86,7 @@ class TouchingSpace {
     static constexpr bool has_wind = Around::has_wind;
     LaneVector<double> wind() const { return around_.wind(); }
     static constexpr bool has_wash = Around::has_wash;
+    static constexpr int drag_pieces = Around::drag_pieces;
     [[nodiscard]] const SpaceSlipstreams& slipstreams() const { return around_.slipstreams(); }
     double wash_scale() const { return around_.wash_scale(); }
     template <int n>

@@ -81,7 +81,8 @@ LaneVector<T> drag_at(const T& linear_n_s_m, const T& quadratic_n_s2_m2, const L
 }
 
 /// Drag along all links, by the two-point Gauss rule: exact where the stream crosses all of a link in one direction.
-template <class T, int n, class P>
+/// @tparam pieces of a link, each with a rule of its own: so many times finer where the direction changes along it
+template <int pieces = 1, class T, int n, class P>
 [[gnu::always_inline]] inline LinkForces<T, n> link_drag(const BasicSpaceModel<P, n>& model,
                                                          const LinkStreams<T, n>& streams) {
     LinkForces<T, n> forces;
@@ -91,9 +92,9 @@ template <class T, int n, class P>
         const LinkStream<T>& stream = streams.of[i];
         LinkForce<T>& all = forces.of[i];
         all = {{T(0), T(0), T(0)}, {T(0), T(0), T(0)}};
-        for (const double share : point) {
-            const T from_joint_m = T(share) * T(link.length_m);
-            const LaneVector<T> half = T(-0.5) * drag_at(T(link.drag_n_s_m), T(link.drag_n_s2_m2),
+        for (int k = 0; k < 2 * pieces; ++k) {
+            const T from_joint_m = T((k / 2 + point[k % 2]) / pieces) * T(link.length_m);
+            const LaneVector<T> half = T(-0.5 / pieces) * drag_at(T(link.drag_n_s_m), T(link.drag_n_s2_m2),
                                                          stream.across_m_s + from_joint_m * stream.turning_1_s);
             all.force_n = all.force_n + half;
             all.first_nm = all.first_nm + from_joint_m * half;

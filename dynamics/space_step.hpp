@@ -100,7 +100,7 @@ template <class T, int n, class P, SpaceSurroundings<T> Around>
     load.wrench.force_n = load.wrench.force_n - drag_at(T(model.body_drag_n_s_m), T(model.body_drag_n_s2_m2), air_m_s);
     if constexpr (n > 0) {
         const LinkStreams<T, n> streams = link_streams(model, p, air_m_s, u);
-        add_link_forces(p, streams, link_drag(model, streams), load);
+        add_link_forces(p, streams, link_drag<Around::drag_pieces>(model, streams), load);
         if constexpr (Around::has_wash) {
             if (around.slipstreams().count > 0) {
                 // A copy: what the step computes with stays where the compiler wants it.

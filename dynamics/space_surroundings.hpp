@@ -22,6 +22,7 @@ namespace downwash::dynamics {
 /// - `has_wind`: false where no drag acts; `wind()`: velocity of the air [m/s]
 /// - `has_wash`: false where no slipstream meets a link; `slipstreams()`: those of the rotors that may;
 ///   `wash_scale()`: their speed over that of the model. Asked for where drag acts
+/// - `drag_pieces`: see link_drag()
 /// - `add_load(q, u, places, load)`: adds other loads
 template <class S, class T>
 concept SpaceSurroundings = requires(const S& around, int rotor, const LaneVector<T>& at_m, const T* q,
@@ -33,6 +34,7 @@ concept SpaceSurroundings = requires(const S& around, int rotor, const LaneVecto
     { S::has_wind } -> std::convertible_to<bool>;
     { spread<T>(around.wind()) } -> std::same_as<LaneVector<T>>;
     { S::has_wash } -> std::convertible_to<bool>;
+    { S::drag_pieces } -> std::convertible_to<int>;
     { around.slipstreams() } -> std::same_as<const SpaceSlipstreams&>;
     { T(around.wash_scale()) } -> std::same_as<T>;
     around.add_load(q, q, places, load);
@@ -84,6 +86,7 @@ struct CalmSpace {
     static constexpr bool has_wind = false;
     [[nodiscard]] LaneVector<double> wind() const { return {0, 0, 0}; }
     static constexpr bool has_wash = false;
+    static constexpr int drag_pieces = 1;
     [[nodiscard]] const SpaceSlipstreams& slipstreams() const { return no_space_slipstreams; }
     [[nodiscard]] double wash_scale() const { return 1; }
     template <class T, int n>
