@@ -94,8 +94,9 @@ template <int pieces = 1, class T, int n, class P>
         all = {{T(0), T(0), T(0)}, {T(0), T(0), T(0)}};
         for (int k = 0; k < 2 * pieces; ++k) {
             const T from_joint_m = T((k / 2 + point[k % 2]) / pieces) * T(link.length_m);
-            const LaneVector<T> half = T(-0.5 / pieces) * drag_at(T(link.drag_n_s_m), T(link.drag_n_s2_m2),
-                                                         stream.across_m_s + from_joint_m * stream.turning_1_s);
+            const LaneVector<T> half =
+                T(-0.5 / pieces) * drag_at(T(link.drag_n_s_m), T(link.drag_n_s2_m2),
+                                           stream.across_m_s + from_joint_m * stream.turning_1_s);
             all.force_n = all.force_n + half;
             all.first_nm = all.first_nm + from_joint_m * half;
         }

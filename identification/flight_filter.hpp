@@ -57,8 +57,8 @@ class FlightFilter {
 /// How flights are filtered.
 struct FilterSettings {
     GustSettings gusts;
-    double lead_s = 0.1;      ///< what of the log comes before the first innovation: the greatest delay
-    SurfaceNodes surface;     ///< nowhere: free air
+    double lead_s = 0.1;   ///< what of the log comes before the first innovation: the greatest delay
+    SurfaceNodes surface;  ///< nowhere: free air
 };
 
 /// @pre the flight has ticks beyond the lead; the robot is sound and has a number of joints that this library has

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <vector>
 
@@ -20,6 +21,7 @@ class FlightFilterOf final : public FlightFilter {
           way_(robot, flight, settings),
           states_(measured + way_.lags() + GustModel::size),
           slopes_(way_.steps()),
+          bends_(way_.steps()),
           gains_(way_.steps(), Eigen::MatrixXd(states_, measured)),
           scales_(way_.steps(), Eigen::VectorXd(measured)) {}
 
@@ -37,7 +39,7 @@ class FlightFilterOf final : public FlightFilter {
         Estimate at = way_.start(model);
         for (std::size_t i = 0; i < way_.steps(); ++i) {
             const std::size_t row = way_.first() + i;
-            at = way_.after(model, at, row);
+            at = corrected(way_.after(model, at, row), bends_[i], way_.lags());
             const Eigen::VectorXd innovation = way_.innovation(model, at, row + 1);
             Eigen::VectorXd correction = Eigen::VectorXd::Zero(states_);
             auto whitened = out.segment(static_cast<Eigen::Index>(i) * measured, measured);
@@ -70,10 +72,12 @@ class FlightFilterOf final : public FlightFilter {
         StateMatrix covariance = start_covariance(noise.measured);
         for (std::size_t i = 0; i < way_.steps(); ++i) {
             const std::size_t row = way_.first() + i;
-            const Estimate next = way_.after(model, at, row);
+            Estimate next = way_.after(model, at, row);
             if (linearises) {
                 slopes_[i] = slope_of(model, at, next, row).template cast<float>();
+                bends_[i] = bend_of(model, at, next, row, covariance);
             }
+            next = corrected(next, bends_[i], way_.lags());
             grow(row, slopes_[i], noise, covariance);
             const Eigen::VectorXd innovation = way_.innovation(model, next, row + 1);
             const Eigen::VectorXd correction = correct(i, innovation, noise, covariance, sums);
@@ -149,10 +153,29 @@ class FlightFilterOf final : public FlightFilter {
         return slope;
     }
 
+    /// By how much the mean of a step differs from the step of the mean, as drag is not linear in the gust: half the
+    /// second differences along the axes of the gust's covariance.
+    Eigen::VectorXd bend_of(const Model& model, const Estimate& at, const Estimate& next, std::size_t row,
+                            const StateMatrix& covariance) const {
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, GustModel::size, GustModel::size>> axes(
+            covariance.template bottomRightCorner<GustModel::size, GustModel::size>());
+        Eigen::VectorXd bend = Eigen::VectorXd::Zero(states_);
+        Eigen::VectorXd by = Eigen::VectorXd::Zero(states_);
+        for (int i = 0; i < GustModel::size; ++i) {
+            const double sd = std::sqrt(std::max(0.0, axes.eigenvalues()[i]));
+            for (const double side : {-sd, sd}) {
+                by.template tail<GustModel::size>() = side * axes.eigenvectors().col(i);
+                bend += 0.5 * difference(way_.after(model, corrected(at, by, way_.lags()), row), next, way_.lags());
+            }
+        }
+        return bend;
+    }
+
     FilterSettings settings_;
     FlightPropagation<n> way_;
     Eigen::Index states_;
     std::vector<Eigen::MatrixXf> slopes_;  ///< of each tick after the first estimate
+    std::vector<Eigen::VectorXd> bends_;   ///< the same
     std::vector<Eigen::MatrixXd> gains_;   ///< the same: a column for each number that is measured
     std::vector<Eigen::VectorXd> scales_;
 };

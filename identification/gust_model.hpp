@@ -8,7 +8,7 @@ namespace downwash::identification {
 
 /// What is known of the gusts of a flight.
 struct GustSettings {
-    double sd_m_s = 0;                    ///< in every direction
+    double sd_m_s = 0;                           ///< in every direction
     double level_length_m = 1, up_length_m = 1;  ///< length scales along the ground, and upward
 };
 

@@ -13,8 +13,8 @@ namespace downwash {
 struct HeldBackCoverage {
     int worlds = 0;
     int lost = 0;  ///< flights in worlds that end early
-    /// Of x, y and z: share of the ticks at which the flight was seen where a flight in one more world is with 95 %, and
-    /// the mean width of that interval [m].
+    /// Of x, y and z: share of the ticks at which the flight was seen where a flight in one more world is with 95 %,
+    /// and the mean width of that interval [m].
     std::array<double, 3> share_within{};
     std::array<double, 3> width_m{};
 };

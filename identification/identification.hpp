@@ -71,7 +71,6 @@ struct Identification {
     std::vector<IdentifiedRatio> ratios;
     std::vector<IdentifiedWind> winds;  ///< one for each flight
     std::vector<IdentifiedNoise> noise;
-    std::array<double, 3> accelerations{};
     std::vector<WeakDirection> weak;
     std::vector<std::string> left_out;  ///< what cannot be identified from such logs at all, with the reason
     double duration_s = 0;

@@ -32,8 +32,6 @@ constexpr int max_steps = 4;    ///< of the numbers, in a round
 constexpr double small_gain = 5e-3;
 /// The same of the noise, of -2 log likelihood: half of what chance changes it by.
 constexpr double small_fall = 0.5;
-/// Slopes of the motion are good enough until a number has moved so far, in standard deviations of what was known.
-constexpr double small_move = 0.1;
 
 /// Distances in radii at which K of a surface is identified.
 const std::vector<double> node_distances{0.5, 0.75, 1, 1.5, 2, 3, 4, 6};
@@ -143,11 +141,12 @@ class Search {
     [[nodiscard]] const std::vector<double>& vehicle() const { return vehicle_; }
     [[nodiscard]] const SurfaceNodes& surface() const { return surface_; }
     [[nodiscard]] const std::array<double, 3>& wind(std::size_t flight) const { return flights_[flight].wind; }
-    [[nodiscard]] const PerChannel& noise(bool of_true_motion) const { return noise_[of_true_motion ? 1 : 0].noise().measured; }
+    [[nodiscard]] const PerChannel& noise(bool of_true_motion) const {
+        return noise_[of_true_motion ? 1 : 0].noise().measured;
+    }
     [[nodiscard]] const PerChannel& counts(bool of_true_motion) const {
         return noise_[of_true_motion ? 1 : 0].counts();
     }
-    [[nodiscard]] std::array<double, 3> accelerations() const { return noise_[0].noise().accelerations; }
     [[nodiscard]] int rounds() const { return rounds_; }
     [[nodiscard]] bool is_converged() const { return is_converged_; }
 
@@ -177,20 +176,8 @@ class Search {
         }
     }
 
-    /// Linearises the motions, unless the numbers are still where they were when that was last done.
+    /// Linearises the motions at the present numbers.
     void linearise() {
-        std::vector<double> here = vehicle_;
-        for (const Flight& flight : flights_) {
-            here.insert(here.end(), flight.wind.begin(), flight.wind.end());
-        }
-        double moved = linearised_at_.empty() ? infinity : 0;
-        for (std::size_t i = 0; i < linearised_at_.size(); ++i) {
-            moved = std::max(moved, std::abs(here[i] - linearised_at_[i]));
-        }
-        if (moved < small_move) {
-            return;
-        }
-        linearised_at_ = std::move(here);
         for (const std::size_t group : {0U, 1U}) {
             for_flights(group, [&](FlightFilter& filter, const Trial& trial) {
                 filter.linearise(trial, noise_[group].noise());
@@ -205,9 +192,8 @@ class Search {
             const auto pass = [&](const Noise& noise) {
                 FilterPass sums;
                 sums.is_finite = true;
-                for_flights(group, [&](FlightFilter& filter, const Trial& trial) {
-                    sums += filter.pass(trial, noise);
-                });
+                for_flights(group,
+                            [&](FlightFilter& filter, const Trial& trial) { sums += filter.pass(trial, noise); });
                 return sums;
             };
             const std::optional<double> by = noise_[group].lower(pass);
@@ -272,7 +258,6 @@ class Search {
     std::vector<double> vehicle_;
     std::vector<Flight> flights_;
     std::array<NoiseSearch, 2> noise_;  ///< of what vehicles saw, and of true motions
-    std::vector<double> linearised_at_;
     int rounds_ = 0;
     bool is_converged_ = false;
 };
@@ -307,7 +292,6 @@ Identification identify(const SpaceRobot& robot, const std::vector<LoggedFlight>
     found.iterations = search.rounds();
     found.is_converged = search.is_converged();
     found.fit = search.fit();
-    found.accelerations = search.accelerations();
     for (const LoggedFlight& flight : used) {
         found.duration_s += flight.ticks.back().t_s - flight.ticks.front().t_s;
     }

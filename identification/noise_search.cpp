@@ -137,8 +137,8 @@ std::optional<double> NoiseSearch::lower(const Pass& pass) {
     }
     has_its_gains_ = true;
     const double before = here.cost;
-    // Both at once can end where accelerations explain what is noise of the sensors, a maximum of the likelihood that is
-    // not the greatest.
+    // Both at once can end where accelerations explain what is noise of the sensors, a maximum of the likelihood that
+    // is not the greatest.
     descend(true, pass, here);
     descend(false, pass, here);
     if (!has_its_gains_) {

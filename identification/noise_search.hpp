@@ -13,8 +13,8 @@
 
 namespace downwash::identification {
 
-/// The noise before a search: of what is measured, what the third differences of neighbouring ticks have if the motion is
-/// smooth; of accelerations, room for numbers that are not found yet.
+/// The noise before a search: of what is measured, what the third differences of neighbouring ticks have if the motion
+/// is smooth; of accelerations, room for numbers that are not found yet.
 [[nodiscard]] Noise first_noise(const std::vector<const LoggedFlight*>& flights, int joints);
 
 /// Searches the noise that makes logs most likely: variances of what is measured by a fixed point, those of unmodelled

@@ -12,7 +12,8 @@ constexpr double surface_effect_sd = 0.3;
 
 /// Whether flights in free air show a number.
 bool is_sought(std::string_view name) {
-    return name.starts_with("vehicle.") || name.starts_with("sensing.pitch_bias") || name.starts_with("sensing.yaw_bias");
+    return name.starts_with("vehicle.") || name.starts_with("sensing.pitch_bias") ||
+           name.starts_with("sensing.yaw_bias");
 }
 
 }  // namespace

@@ -57,8 +57,7 @@ void SurfaceWeights::add(double z_over_r, double* weights) const {
     }
 }
 
-void SurfaceWeights::find_ratios(const std::vector<double>& effects, std::size_t tick,
-                                 double ratio[max_rotors]) const {
+void SurfaceWeights::find_ratios(const std::vector<double>& effects, std::size_t tick, double ratio[max_rotors]) const {
     std::fill_n(ratio, max_rotors, 1.0);
     if (weights_.empty()) {
         return;

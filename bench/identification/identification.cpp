@@ -37,14 +37,14 @@ struct Options {
     std::string robot;
     int vehicles = 200;
     int flights = 1;
-    double length_s = 20;
+    double length_s = 10;
     std::uint64_t seed = 1;
     int threads = 1;
     bool shows_each = false;
     test::LogNoise log_noise;
     int held_back_worlds = 0;  ///< 0: no flight is held back
-    std::string logs;     ///< folder for the logs as CSV; empty: none
-    std::string problem;  ///< empty: no plans
+    std::string logs;          ///< folder for the logs as CSV; empty: none
+    std::string problem;       ///< empty: no plans
     std::uint64_t iterations = 400, worlds = 400;
 };
 
@@ -114,7 +114,7 @@ void write_csv(const LoggedFlight& log, const SpaceRobot& robot, const std::stri
 struct Studied {
     Vehicle vehicle;
     std::vector<SpaceWorld> worlds;
-    std::optional<Identification> found;  ///< empty: a flight did not end
+    std::optional<Identification> found;            ///< empty: a flight did not end
     std::optional<HeldBackCoverage> before, after;  ///< of a flight held back
 };
 
@@ -137,8 +137,8 @@ Studied study(const SpaceRobot& robot, const Options& options, std::uint64_t ind
     std::vector<LoggedFlight> logs;
     for (int i = 0; i < options.flights; ++i) {
         studied.worlds.push_back(world_of_flight(robot, studied.vehicle, options.seed, i));
-        std::optional<LoggedFlight> log = flown_log(robot, options, studied.vehicle, studied.worlds.back(),
-                                                    fmt::format("flight {}", i + 1), random);
+        std::optional<LoggedFlight> log =
+            flown_log(robot, options, studied.vehicle, studied.worlds.back(), fmt::format("flight {}", i + 1), random);
         if (!log) {
             return studied;
         }
@@ -239,8 +239,9 @@ void print(const std::vector<std::pair<std::string, Tally>>& tallies) {
 /// How far flights that were held back are within worlds, before and after.
 void print_held_back(const std::vector<Studied>& all, int worlds) {
     fmt::print(
-        "\nFlights held back, in {} worlds: the share of their samples between the 2.5 % and 97.5 % quantiles, and the "
-        "distance of these.\n\n",
+        "\nFlights held back, in {} worlds: the share of their samples where a flight in one more world is with 95 %, "
+        "and "
+        "how wide that is.\n\n",
         worlds);
     fmt::print("| worlds | flights | x, y, z within | least of a flight | width along x, y, z [cm] |\n");
     fmt::print("| --- | ---: | ---: | ---: | ---: |\n");
@@ -369,15 +370,12 @@ void measure(const Options& options) {
             for (const IdentifiedNoise& noise : studied.found->noise) {
                 fmt::print("<!-- {} {} {} -->\n", noise.name, noise.sd, noise.sd_of_sd);
             }
-            fmt::print("<!-- truth {} {} {} accelerations {} {} {} -->\n", studied.vehicle.world.position_noise_m,
-                       studied.vehicle.world.velocity_noise_m_s, studied.vehicle.world.gyro_noise_rad_s,
-                       studied.found->accelerations[0], studied.found->accelerations[1], studied.found->accelerations[2]);
             fmt::print("<!-- rounds {} fit {} -->\n", studied.found->iterations, studied.found->fit);
             if (studied.after) {
                 const HeldBackCoverage &before = *studied.before, &after = *studied.after;
                 fmt::print("<!-- held back: {:.3f} {:.3f} {:.3f} -> {:.3f} {:.3f} {:.3f} -->\n", before.share_within[0],
-                           before.share_within[1], before.share_within[2], after.share_within[0],
-                           after.share_within[1], after.share_within[2]);
+                           before.share_within[1], before.share_within[2], after.share_within[0], after.share_within[1],
+                           after.share_within[2]);
             }
         }
     }
