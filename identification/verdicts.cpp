@@ -126,9 +126,6 @@ void add_left_out(const SpaceRobot& robot, bool sees, Identification& found) {
     found.left_out.emplace_back(
         "sensing.position_bias_m: a flight is the same wherever it is; only places that are known from outside tell "
         "it");
-    if (robot.plant.wash) {
-        found.left_out.emplace_back("vehicle.arm_wash_scale: the speed of slipstreams at the arm is taken as it is");
-    }
     if (!robot.plant.drag.is_any()) {
         found.left_out.emplace_back("multirotor.drag: the robot file has none that could be scaled");
     }

@@ -47,6 +47,7 @@ constexpr std::array parts{
     Part{"bench", "libsqlite3-dev"},
     Part{"compare", ""},
     Part{"export", "libgeographiclib-dev"},
+    Part{"identify", "libceres-dev"},
     Part{"robot", "liburdfdom-dev, libsdformat-dev, libmujoco-dev and libpugixml-dev"},
     Part{"study", "libsqlite3-dev"},
     Part{"validate", ""},

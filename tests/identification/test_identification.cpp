@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <utility>
 
 #include "../support/judged_logs.hpp"
 #include "downwash/identification/held_back.hpp"
@@ -59,6 +60,15 @@ TEST_CASE("a flight of the judge tells the vehicle that flew it") {
         INFO(name);
         CHECK(number_of(found, name).sd < 0.5 * number_of(found, name).before_sd);
     }
+    // No acceleration takes the place of the sensors' noise.
+    for (const auto& [name, truth] : {std::pair("sensing.position_noise_m", world.position_noise_m),
+                                      std::pair("sensing.velocity_noise_m_s", world.velocity_noise_m_s),
+                                      std::pair("sensing.gyro_noise_rad_s", world.gyro_noise_rad_s)}) {
+        INFO(name);
+        const auto noise = std::ranges::find(found.noise, name, &IdentifiedNoise::name);
+        REQUIRE(noise != found.noise.end());
+        CHECK(noise->sd == Approx(truth).margin(4 * noise->sd_of_sd));
+    }
     // A vehicle without an arm turns in yaw by drag torque, which is that of the file: this tells thrust, and so the
     // mass.
     CHECK(number_of(found, "vehicle.thrust_scale").is_learned);
@@ -115,6 +125,19 @@ TEST_CASE("a flight held back is within worlds of the right vehicle, and outside
     const HeldBackCoverage right = held_back_coverage(robot, log, {}, 40, 1);
     for (const double share : right.share_within) {
         CHECK(share > 0.6);
+    }
+    // As wide as wind, gusts and noise of any day make it, and no wider: the vehicle is known.
+    SpaceRobot known = robot;
+    known.uncertainty = Uncertainty{};
+    for (const UncertaintyKey& key : space_uncertainty_keys()) {
+        if (key.spread != nullptr && key.is_of_robot) {
+            (*known.uncertainty).*key.spread = Spread::of_sd(0);
+        }
+    }
+    const HeldBackCoverage sure = held_back_coverage(known, log, {}, 40, 1);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        CHECK(sure.share_within[axis] > 0.6);
+        CHECK(sure.width_m[axis] < right.width_m[axis]);
     }
     for (LoggedTick& tick : log.ticks) {
         tick.seen.position_m[0] += 0.5;
