@@ -130,7 +130,7 @@ TEST_CASE("a flight held back is within worlds of the right vehicle, and outside
     SpaceRobot known = robot;
     known.uncertainty = Uncertainty{};
     for (const UncertaintyKey& key : space_uncertainty_keys()) {
-        if (key.spread != nullptr && key.is_of_robot) {
+        if (key.spread != nullptr && key.path.starts_with("vehicle.")) {
             (*known.uncertainty).*key.spread = Spread::of_sd(0);
         }
     }
