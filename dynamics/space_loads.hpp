@@ -93,7 +93,8 @@ template <int pieces = 1, class T, int n, class P>
         LinkForce<T>& all = forces.of[i];
         all = {{T(0), T(0), T(0)}, {T(0), T(0), T(0)}};
         for (int k = 0; k < 2 * pieces; ++k) {
-            const T from_joint_m = T((k / 2 + point[k % 2]) / pieces) * T(link.length_m);
+            const int piece = k / 2;
+            const T from_joint_m = T((piece + point[k % 2]) / pieces) * T(link.length_m);
             const LaneVector<T> half =
                 T(-0.5 / pieces) * drag_at(T(link.drag_n_s_m), T(link.drag_n_s2_m2),
                                            stream.across_m_s + from_joint_m * stream.turning_1_s);

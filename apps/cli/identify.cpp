@@ -25,7 +25,7 @@ namespace {
 LogOptions log_options(const IdentifyArguments& given) {
     LogOptions options;
     if (given.axes) {
-        options.axes = *given.axes == "up" ? LogAxes::up : LogAxes::down;
+        options.axes = *given.axes == "ned" ? LogAxes::down : LogAxes::up;
     }
     for (const std::string& column : given.columns) {
         const std::size_t equals = column.find('=');

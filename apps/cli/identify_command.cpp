@@ -31,9 +31,15 @@ void add_identify(Command program, Action& action, ExitCode (*run)(const Identif
         .add_option("--thrust-exponent P", given.thrust_exponent,
                     "of logs with shares of the full command: thrust is max_thrust_n times the share to the power P")
         .in_range(0.5, 3.0);
-    command.add_option("--axes AXES", given.axes, "axes of the logs; default: as they say or show")
-        .one_of({"up", "down"});
-    command.add_option("--column SIGNAL=NAME", given.columns, "a column of a CSV; may be repeated").repeated();
+    command
+        .add_option("--axes A", given.axes,
+                    "axes of the log: ned (z down; body forward, right, down) or enu (z up; body forward, left, up); "
+                    "default: those of its format")
+        .one_of({"ned", "enu"});
+    command
+        .add_option("--column SIGNAL=NAME", given.columns,
+                    "the column of a CSV that holds a quantity; as of `compare`, may be repeated")
+        .repeated();
     command.add_option("--ground Z", given.ground_m, "height of a wide, level floor below the flights [m]");
     command.add_option("--ceiling Z", given.ceiling_m, "height of a wide, level ceiling above the flights [m]");
     command.add_option("--surface-data FILE", given.surface_data,
@@ -44,10 +50,11 @@ void add_identify(Command program, Action& action, ExitCode (*run)(const Identif
         .in_range(0.0, 20.0);
     command.add_option("--gust V", given.gust_m_s, "standard deviation of gusts [m/s]; default 0.3")
         .in_range(0.0, 20.0);
-    command.add_option("--worlds N", given.worlds, "worlds in which a flight held back is flown")
+    command.add_option("--held-back-worlds N", given.worlds, "worlds in which a flight held back is flown")
         .in_range<std::uint64_t>(10, 10000)
         .shows_default();
-    command.add_option("--seed N", given.seed, "seed of these worlds").shows_default();
+    command.add_option("--seed N", given.seed, "seed of the random numbers; of the worlds of --held-back")
+        .shows_default();
     add_json(command, given.as_json);
 }
 

@@ -236,6 +236,24 @@ void print(const std::vector<std::pair<std::string, Tally>>& tallies) {
     }
 }
 
+/// Whether the truth is within intervals as often as they say.
+void print_bounds(const std::vector<std::pair<std::string, Tally>>& tallies) {
+    double least = 1, most = 0;
+    for (const auto& [name, tally] : tallies) {
+        if (tally.learned > 0) {
+            const double share = static_cast<double>(tally.within) / static_cast<double>(tally.learned);
+            least = std::min(least, share);
+            most = std::max(most, share);
+        }
+    }
+    const bool is_kept = least >= 0.9 && most <= 0.99;
+    fmt::print("\n| bound | found | |\n| --- | --- | --- |\n");
+    fmt::print(
+        "| the truth within the 95 % interval in 90 to 99 % of the vehicles, for each number | {:.1f} to {:.1f} % | {} "
+        "|\n",
+        100 * least, 100 * most, is_kept ? "kept" : "**not kept**");
+}
+
 /// How far flights that were held back are within worlds, before and after.
 void print_held_back(const std::vector<Studied>& all, int worlds) {
     fmt::print(
@@ -380,11 +398,21 @@ void measure(const Options& options) {
         }
     }
     fmt::print(
+        "Each vehicle is a draw of the default uncertainty, and of its drag with a standard deviation of 30 %. The "
+        "judge flies "
+        "it along a reference in free air, in wind and gusts, and\nrecords what its controller saw and commanded. "
+        "[docs/identification.md](../../docs/identification.md) has the method.\n\nStandard deviations are this small "
+        "because the judge's vehicle is the model's, but for the numbers that are sought. `thrust_scale` and "
+        "`rotor_thrust_scale` enter a flight only by their\nproduct; what was known before tells them apart. The wind "
+        "is "
+        "learned as far as gusts that last as long as the flight let it.\n");
+    fmt::print(
         "\n## {}\n\n{} vehicles, {} flight{} of {} s each, seed {}. {} flights did not end, {} searches came to no "
         "rest.\n\n",
         robot.name, options.vehicles, options.flights, options.flights > 1 ? "s" : "", options.length_s, options.seed,
         lost, open);
     print(tallies);
+    print_bounds(tallies);
     if (options.held_back_worlds > 0) {
         print_held_back(all, options.held_back_worlds);
     }

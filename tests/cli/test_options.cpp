@@ -86,6 +86,7 @@ TEST_CASE("What several commands do has one name in all of them") {
           "report",
           "export",
           "replan",
+          "identify",
           "robot import",
           "robot show",
           "robot thrust"}},
