@@ -148,6 +148,7 @@ HeldBackCoverage held_back_coverage(const SpaceRobot& robot, const LoggedFlight&
         const Vector3& logged_m = flight.ticks[tick_at(flight, t_s)].seen.position_m;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::vector<double> values;
+            values.reserve(seen_m.size());
             for (const std::vector<Vector3>& places_m : seen_m) {
                 values.push_back(places_m[tick][axis]);
             }
