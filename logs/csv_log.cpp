@@ -76,6 +76,7 @@ class CsvLog {
         errors_.throw_any();
         scale_times(*time);
         turn_angles();
+        turn_odometry();
         choose_rotor_unit();
         choose_axes();
         if (columns_.is_topic_by_name()) {
@@ -248,6 +249,29 @@ class CsvLog {
                                                 "them" +
                                                 missing);
         }
+    }
+
+    /// The twist of nav_msgs/Odometry is in the frame of the body. The attitude of the same rows turns it into the
+    /// world.
+    void turn_odometry() {
+        const auto velocity = columns_.find("vx");
+        if (!velocity || velocity->written != "twist.twist.linear.x" || log_.velocity_m_s.empty()) {
+            return;
+        }
+        if (log_.attitude.t_s != log_.velocity_m_s.t_s) {
+            log_.velocity_m_s = {};
+            log_.remarks.push_back(file_ +
+                                   ": velocities of twist.twist, in the frame of the body, are left out, since "
+                                   "not all of their rows have an attitude");
+            return;
+        }
+        for (std::size_t i = 0; i < log_.velocity_m_s.rows(); ++i) {
+            const auto q = log_.attitude.row(i), v = log_.velocity_m_s.row(i);
+            const Vector3 turned = rotated({q[0], q[1], q[2], q[3]}, {v[0], v[1], v[2]});
+            std::ranges::copy(turned, log_.velocity_m_s.numbers.begin() + static_cast<std::ptrdiff_t>(3 * i));
+        }
+        log_.remarks.push_back(file_ +
+                               ": velocities of twist.twist are in the frame of the body, as in nav_msgs/Odometry");
     }
 
     void scale_times(const SignalColumn& time) {

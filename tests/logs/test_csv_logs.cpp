@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <fstream>
 #include <string>
 
@@ -192,4 +194,28 @@ TEST_CASE("Units and directions in the names of columns count") {
     CHECK(east.position_m.row(0)[0] == 2);
     CHECK(east.position_m.row(0)[2] == 3);
     CHECK(east.axes_source == AxesSource::format);
+}
+
+TEST_CASE("The twist of an odometry is in the frame of the body") {
+    const std::string begin =
+        "%time,field.pose.pose.position.x,field.pose.pose.position.y,field.pose.pose.position.z,"
+        "field.pose.pose.orientation.x,field.pose.pose.orientation.y,field.pose.pose.orientation.z,"
+        "field.pose.pose.orientation.w,field.twist.twist.linear.x,field.twist.twist.linear.y,"
+        "field.twist.twist.linear.z\n";
+    const double half = std::sqrt(0.5);  // yaw of 90 degrees: forward is y
+    const std::string turned = ",0,0,1,0,0," + std::to_string(half) + "," + std::to_string(half) + ",2,0,0.5\n";
+    const FlightLog log = WrittenLog(begin + "1000000000" + turned + "1010000000" + turned, "odometry.csv").read();
+    REQUIRE(log.velocity_m_s.rows() == 2);
+    CHECK(log.velocity_m_s.row(0)[0] == Approx(0).margin(1e-5));
+    CHECK(log.velocity_m_s.row(0)[1] == Approx(2).epsilon(1e-5));
+    CHECK(log.velocity_m_s.row(0)[2] == Approx(0.5));
+    CHECK(std::ranges::any_of(
+        log.remarks, [](const auto& remark) { return remark.find("frame of the body") != std::string::npos; }));
+
+    const FlightLog lacking = WrittenLog(
+                                  "time,x,y,z,twist.twist.linear.x,twist.twist.linear.y,twist.twist.linear.z\n0,0,0,1,"
+                                  "2,0,0\n0.01,0,0,1,2,0,0\n",
+                                  "odometry.csv")
+                                  .read();
+    CHECK(lacking.velocity_m_s.empty());
 }
