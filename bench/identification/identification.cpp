@@ -343,8 +343,11 @@ Planned plan_and_fly(const SpaceProblem& problem, const Studied& studied, const 
 
 void measure_plans(const SpaceProblem& problem, const std::vector<Studied>& all, const Options& options) {
     fmt::print(
-        "\nPlans for `{}` from what was learned, {} iterations each, flown in {} worlds of the true vehicle.\n\n",
-        problem.name, options.iterations, options.worlds);
+        "\n## Plans\n\nPlans for `{}` from what {} flights of {} s told of each of {} vehicles (seed {}), {} "
+        "iterations each, flown "
+        "in {} worlds of the true vehicle.\n\n",
+        problem.name, options.flights, options.length_s, options.vehicles, options.seed, options.iterations,
+        options.worlds);
     fmt::print(
         "| vehicle | certified | failures in its true worlds | planned cost, over that with what was known before |\n");
     fmt::print("| ---: | --- | ---: | ---: |\n");
@@ -363,8 +366,11 @@ void measure_plans(const SpaceProblem& problem, const std::vector<Studied>& all,
         fmt::print("| {} | {} | {} of {} | {} |\n", i + 1, planned.is_certified ? "yes" : "no", planned.failures,
                    planned.flights, both ? fmt::format("{:.3f}", planned.learned_cost / planned.known_cost) : "-");
     }
-    fmt::print("\n{} of {} plans are certified. {} of {} flights in true worlds failed; {} vehicles reach 1 %.\n",
-               certified, vehicles, failures, flights, above);
+    fmt::print("\n{} of {} plans are certified.\n\n| bound | found | |\n| --- | --- | --- |\n", certified, vehicles);
+    fmt::print(
+        "| certified plans fail in less than 1 % of the worlds of each true vehicle | {} of {} in all, {} vehicles "
+        "reach 1 % | {} |\n",
+        failures, flights, above, flights > 0 && above == 0 ? "kept" : "**not kept**");
 }
 
 void measure(const Options& options) {
@@ -397,6 +403,12 @@ void measure(const Options& options) {
             }
         }
     }
+    if (!options.problem.empty()) {
+        SpaceProblem problem = read_space_problem(options.problem);
+        problem.robot = robot;
+        measure_plans(problem, all, options);
+        return;
+    }
     fmt::print(
         "Each vehicle is a draw of the default uncertainty, and of its drag with a standard deviation of 30 %. The "
         "judge flies "
@@ -415,11 +427,6 @@ void measure(const Options& options) {
     print_bounds(tallies);
     if (options.held_back_worlds > 0) {
         print_held_back(all, options.held_back_worlds);
-    }
-    if (!options.problem.empty()) {
-        SpaceProblem problem = read_space_problem(options.problem);
-        problem.robot = robot;
-        measure_plans(problem, all, options);
     }
 }
 
