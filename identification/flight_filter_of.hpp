@@ -17,8 +17,7 @@ template <int n>
 class FlightFilterOf final : public FlightFilter {
  public:
     FlightFilterOf(const SpaceRobot& robot, const LoggedFlight& flight, const FilterSettings& settings)
-        : settings_(settings),
-          way_(robot, flight, settings),
+        : way_(robot, flight, settings),
           states_(measured + way_.lags() + GustModel::size),
           slopes_(way_.steps()),
           bends_(way_.steps()),
@@ -171,7 +170,6 @@ class FlightFilterOf final : public FlightFilter {
         return bend;
     }
 
-    FilterSettings settings_;
     FlightPropagation<n> way_;
     Eigen::Index states_;
     std::vector<Eigen::MatrixXf> slopes_;  ///< of each tick after the first estimate

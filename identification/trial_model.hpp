@@ -30,7 +30,7 @@ struct LoggedSpace : dynamics::CalmSpace {
     static constexpr bool has_wind = true;
     [[nodiscard]] dynamics::LaneVector<double> wind() const { return wind_m_s; }
     static constexpr bool has_wash = true;
-    /// Flights are so exact that two points along a link would make the multirotor's drag wrong by 1 %.
+    /// Flights are so exact that two points along a link would make the multirotor's drag wrong by 0.1 %.
     static constexpr int drag_pieces = 8;
     [[nodiscard]] const SpaceSlipstreams& slipstreams() const { return *streams; }
     [[nodiscard]] double wash_scale() const { return stream_scale; }
