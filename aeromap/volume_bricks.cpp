@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <utility>
 
+#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 
@@ -33,6 +36,10 @@ void require_range(double low_m, double high_m, const char* axis) {
     }
 }
 
+double cells_along(double length_m, double radius_m) {
+    return std::max(1.0, std::ceil(length_m / (longest_radii * radius_m)));
+}
+
 VolumeGrid grid_over(const PlaneOfMotion& frame, const Bounds& extent, double lateral_low_m, double lateral_high_m,
                      double radius_m) {
     require_range(extent.x_low_m, extent.x_high_m, "x");
@@ -44,26 +51,21 @@ VolumeGrid grid_over(const PlaneOfMotion& frame, const Bounds& extent, double la
                     {},
                     {},
                     {}};
-    std::array<double, 3> cells{};
-    double bricks = 1;
+    if (!VolumeMap::fits(extent, lateral_low_m, lateral_high_m, radius_m)) {
+        throw_input_error("the volume has more than 2^26 bricks of 1.8 rotor radii; choose a smaller one");
+    }
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double length_m = grid.high_m[axis] - grid.low_m[axis];
-        cells[axis] = std::max(1.0, std::ceil(length_m / (longest_radii * radius_m)));
-        grid.cell_m[axis] = length_m / cells[axis];
-        bricks *= std::ceil(cells[axis] / VolumeBrick::side_cells);
-    }
-    if (!(bricks <= static_cast<double>(max_volume_bricks))) {
-        throw_input_error("the volume has more than 2^22 bricks of 1.8 rotor radii; choose a smaller one");
-    }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        grid.cells[axis] = static_cast<std::uint32_t>(cells[axis]);
+        const double cells = cells_along(length_m, radius_m);
+        grid.cell_m[axis] = length_m / cells;
+        grid.cells[axis] = static_cast<std::uint32_t>(cells);
         grid.bricks[axis] = (grid.cells[axis] + VolumeBrick::side_cells - 1) / VolumeBrick::side_cells;
     }
     return grid;
 }
 
 /// Nothing near anywhere: the flyable area's end is at least R away.
-std::unique_ptr<const VolumeBrick> calm_brick(double radius_m) {
+std::unique_ptr<VolumeBrick> calm_brick(double radius_m) {
     auto brick = std::make_unique<VolumeBrick>();
     for (VolumeNode& cell : brick->cells) {
         cell = {VolumeNodeKind::calm, static_cast<float>(radius_m), nullptr, nullptr};
@@ -99,6 +101,15 @@ void adopt(VolumeNode& node, const VolumeNode& theirs, OwnedBrick& brick) {
 
 }  // namespace
 
+bool VolumeMap::fits(const Bounds& extent, double lateral_low_m, double lateral_high_m, double radius_m) {
+    double bricks = 1;
+    for (const double length_m :
+         {extent.x_high_m - extent.x_low_m, lateral_high_m - lateral_low_m, extent.z_high_m - extent.z_low_m}) {
+        bricks *= std::ceil(cells_along(length_m, radius_m) / VolumeBrick::side_cells);
+    }
+    return bricks <= static_cast<double>(max_bricks);
+}
+
 SidedFactor<double> direct_value(const DirectEffect& effect, const Vector3& hub_m) {
     if (effect.is_of_walls_around()) {
         const Vector3 towards = effect.towards_wall(hub_m);
@@ -112,9 +123,11 @@ VolumeBricks::VolumeBricks(std::shared_ptr<const DirectEffect> effect, const Pla
     : effect_(std::move(effect)),
       grid_(grid_over(frame, extent, lateral_low_m, lateral_high_m, effect_->rotor_radius_m())),
       calm_(calm_brick(effect_->rotor_radius_m())),
-      places_(grid_.brick_count(), nullptr),
-      owners_(places_.size()),
-      is_new_(places_.size(), 0) {}
+      places_(static_cast<VolumeBrick**>(std::calloc(grid_.brick_count(), sizeof(VolumeBrick*)))) {
+    if (places_ == nullptr) {
+        throw std::bad_alloc();
+    }
+}
 
 VolumeView VolumeBricks::view() noexcept {
     VolumeView view{};
@@ -129,33 +142,44 @@ VolumeView VolumeBricks::view() noexcept {
     view.bricks[0] = grid_.bricks[0];
     view.bricks[1] = grid_.bricks[1];
     view.calm_value = effect_->is_of_walls_around() ? 0 : 1;
-    view.places = places_.data();
+    view.places = places_.get();
     view.source = this;
     return view;
+}
+
+VolumeBrick* VolumeBricks::place(std::size_t number) const noexcept {
+    return __atomic_load_n(&places_[number], __ATOMIC_ACQUIRE);
 }
 
 void VolumeBricks::put(std::size_t number, std::unique_ptr<OwnedBrick> brick) {
     const std::scoped_lock lock(mutex_);
     if (places_[number] == nullptr) {
-        owners_[number] = std::move(brick);
-        const VolumeBrick* const place = owners_[number] != nullptr ? owners_[number].get() : calm_.get();
-        __atomic_store_n(&places_[number], place, __ATOMIC_RELEASE);
+        made_.push_back(number);
+        VolumeBrick* put = calm_.get();
+        if (brick != nullptr) {
+            put = brick.get();
+            owned_.push_back(std::move(brick));
+        }
+        __atomic_store_n(&places_[number], put, __ATOMIC_RELEASE);
     }
 }
 
 const VolumeBrick& VolumeBricks::made(std::size_t number) {
-    const VolumeBrick* place = __atomic_load_n(&places_[number], __ATOMIC_ACQUIRE);
-    if (place == nullptr) {
+    if (place(number) == nullptr) {
         const TimeSpent spent(filling_ns_);
         put(number, make_brick(*effect_, grid_, number));
         note_explored(number);
-        place = __atomic_load_n(&places_[number], __ATOMIC_ACQUIRE);
     }
-    return *place;
+    return *place(number);
+}
+
+OwnedBrick* VolumeBricks::owned(std::size_t number) const {
+    VolumeBrick* const brick = place(number);
+    return brick == calm_.get() ? nullptr : static_cast<OwnedBrick*>(brick);
 }
 
 void VolumeBricks::explore(const PlaceInBrick& place) {
-    OwnedBrick& brick = *owners_[place.brick];
+    OwnedBrick& brick = *owned(place.brick);
     {
         const std::scoped_lock lock(brick.mutex);
         const TimeSpent spent(filling_ns_);
@@ -167,15 +191,16 @@ void VolumeBricks::explore(const PlaceInBrick& place) {
 /// Lets bricks forget their samples that nobody has asked lately.
 void VolumeBricks::note_explored(std::size_t number) {
     constexpr std::size_t max_lately = 64;
+    OwnedBrick* const brick = owned(number);
     OwnedBrick* forgets = nullptr;
     {
         const std::scoped_lock lock(mutex_);
-        is_new_[number] = 1;
-        if (owners_[number] != nullptr && std::find(lately_.begin(), lately_.end(), number) == lately_.end()) {
-            lately_.push_back(number);
+        new_.insert(number);
+        if (brick != nullptr && std::find(lately_.begin(), lately_.end(), brick) == lately_.end()) {
+            lately_.push_back(brick);
         }
         if (lately_.size() > max_lately) {
-            forgets = owners_[lately_.front()].get();
+            forgets = lately_.front();
             lately_.pop_front();
         }
     }
@@ -188,16 +213,16 @@ void VolumeBricks::note_explored(std::size_t number) {
 void VolumeBricks::fill(int threads, const std::function<void(double)>& on_progress, const StopCondition& is_over) {
     throw_if_over(is_over);
     run_parallel(
-        places_.size(), threads,
+        grid_.brick_count(), threads,
         [&](std::size_t number) {
             throw_if_over(is_over);
             static_cast<void>(made(number));
-            if (owners_[number] != nullptr) {
+            if (OwnedBrick* const brick = owned(number); brick != nullptr) {
                 {
-                    const std::scoped_lock lock(owners_[number]->mutex);
+                    const std::scoped_lock lock(brick->mutex);
                     const TimeSpent spent(filling_ns_);
-                    explore_all(*effect_, grid_, number, *owners_[number]);
-                    owners_[number]->samples = {};
+                    explore_all(*effect_, grid_, number, *brick);
+                    brick->samples = {};
                 }
                 note_explored(number);
             }
@@ -207,32 +232,21 @@ void VolumeBricks::fill(int threads, const std::function<void(double)>& on_progr
 
 std::vector<std::size_t> VolumeBricks::made() const {
     const std::scoped_lock lock(mutex_);
-    std::vector<std::size_t> numbers;
-    for (std::size_t number = 0; number < places_.size(); ++number) {
-        if (places_[number] != nullptr) {
-            numbers.push_back(number);
-        }
-    }
+    std::vector<std::size_t> numbers = made_;
+    std::sort(numbers.begin(), numbers.end());
     return numbers;
 }
 
 std::vector<std::size_t> VolumeBricks::take_new() {
     const std::scoped_lock lock(mutex_);
-    std::vector<std::size_t> numbers;
-    for (std::size_t number = 0; number < places_.size(); ++number) {
-        if (std::exchange(is_new_[number], std::uint8_t{0}) != 0) {
-            numbers.push_back(number);
-        }
-    }
+    std::vector<std::size_t> numbers(new_.begin(), new_.end());
+    new_.clear();
+    std::sort(numbers.begin(), numbers.end());
     return numbers;
 }
 
-bool VolumeBricks::is_calm(std::size_t number) const {
-    return __atomic_load_n(&places_[number], __ATOMIC_ACQUIRE) == calm_.get();
-}
-
 void VolumeBricks::adopt(std::size_t number, std::unique_ptr<OwnedBrick> brick) {
-    if (__atomic_load_n(&places_[number], __ATOMIC_ACQUIRE) == nullptr) {
+    if (place(number) == nullptr) {
         if (brick != nullptr) {  // what is the same in the whole brick is not in its bytes
             std::unique_ptr<OwnedBrick> blank = make_brick(*effect_, grid_, number);
             if (blank == nullptr) {
@@ -243,22 +257,20 @@ void VolumeBricks::adopt(std::size_t number, std::unique_ptr<OwnedBrick> brick) 
             put(number, nullptr);
         }
     }
-    if (brick != nullptr && !is_calm(number)) {
-        OwnedBrick& ours = *owners_[number];
-        const std::scoped_lock lock(ours.mutex);
+    if (OwnedBrick* const ours = owned(number); brick != nullptr && ours != nullptr) {
+        const std::scoped_lock lock(ours->mutex);
         for (std::size_t cell = 0; cell < VolumeBrick::cell_count; ++cell) {
-            downwash::adopt(ours.cells[cell], brick->cells[cell], ours);
+            downwash::adopt(ours->cells[cell], brick->cells[cell], *ours);
         }
     }
 }
 
 template <class Each>
 void VolumeBricks::for_each_owned(const Each& each) const {
-    for (const std::size_t number : made()) {
-        if (!is_calm(number)) {
-            const std::scoped_lock lock(owners_[number]->mutex);
-            each(*owners_[number]);
-        }
+    const std::scoped_lock lock(mutex_);
+    for (const std::unique_ptr<OwnedBrick>& brick : owned_) {
+        const std::scoped_lock brick_lock(brick->mutex);
+        each(*brick);
     }
 }
 
@@ -269,8 +281,13 @@ std::size_t VolumeBricks::polynomials() const {
 }
 
 std::size_t VolumeBricks::memory_bytes() const {
-    // Pointers to a brick and to its owner, and a flag, whether there is one or not.
-    std::size_t bytes = sizeof(*this) + sizeof(VolumeBrick) + places_.size() * (2 * sizeof(void*) + 1);
+    constexpr std::size_t page_bytes = 4096;
+    std::vector<std::size_t> pages = made();  // those of the places that were written to
+    for (std::size_t& number : pages) {
+        number /= page_bytes / sizeof(VolumeBrick*);
+    }
+    pages.erase(std::unique(pages.begin(), pages.end()), pages.end());
+    std::size_t bytes = sizeof(*this) + sizeof(VolumeBrick) + pages.size() * page_bytes;
     for_each_owned([&](const OwnedBrick& brick) { bytes += brick.memory_bytes(); });
     return bytes;
 }

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <unordered_set>
 #include <vector>
 
 #include "downwash/aeromap/direct_effect.hpp"
@@ -21,9 +23,6 @@
 #include "downwash/scene/plane_of_motion.hpp"
 
 namespace downwash {
-
-/// A volume has no more bricks than this.
-inline constexpr std::size_t max_volume_bricks = 4194304;
 
 /// A brick with the memory of what it holds. Nodes and polynomials keep their places while it grows.
 struct OwnedBrick : VolumeBrick {
@@ -106,10 +105,8 @@ class VolumeBricks {
     [[nodiscard]] std::vector<std::size_t> made() const;
     /// The numbers of those in which something has become known here since the last call: all but what was adopted.
     [[nodiscard]] std::vector<std::size_t> take_new();
-    /// Whether a brick is one of those in which nothing has an effect. @pre it is made
-    [[nodiscard]] bool is_calm(std::size_t number) const;
-    /// @pre it is made, and not calm
-    [[nodiscard]] OwnedBrick& owned(std::size_t number) { return *owners_[number]; }
+    /// A brick with its memory; null where nothing has an effect. @pre it is made
+    [[nodiscard]] OwnedBrick* owned(std::size_t number) const;
 
     /// Adds what another brick of this number knows; null: a calm one.
     void adopt(std::size_t number, std::unique_ptr<OwnedBrick> brick);
@@ -120,20 +117,26 @@ class VolumeBricks {
     [[nodiscard]] double filling_s() const noexcept { return 1e-9 * static_cast<double>(filling_ns_.load()); }
 
  private:
+    [[nodiscard]] VolumeBrick* place(std::size_t number) const noexcept;
     /// Puts a brick in its place, unless there is one.
     void put(std::size_t number, std::unique_ptr<OwnedBrick> brick);
     void note_explored(std::size_t number);
     template <class Each>
     void for_each_owned(const Each& each) const;
 
+    struct Free {
+        void operator()(VolumeBrick** places) const noexcept { std::free(static_cast<void*>(places)); }
+    };
+
     std::shared_ptr<const DirectEffect> effect_;
     VolumeGrid grid_;
-    std::unique_ptr<const VolumeBrick> calm_;
-    std::vector<const VolumeBrick*> places_;  ///< read by everybody, by atomic loads
-    mutable std::mutex mutex_;                ///< guards all below, and writing to places_
-    std::vector<std::unique_ptr<OwnedBrick>> owners_;
-    std::vector<std::uint8_t> is_new_;
-    std::deque<std::size_t> lately_;  ///< bricks that keep their samples
+    std::unique_ptr<VolumeBrick> calm_;
+    std::unique_ptr<VolumeBrick*[], Free> places_;  ///< of all bricks; read by everybody, by atomic loads
+    mutable std::mutex mutex_;                      ///< guards all below, and writing to places_
+    std::vector<std::unique_ptr<OwnedBrick>> owned_;
+    std::vector<std::size_t> made_;
+    std::unordered_set<std::size_t> new_;
+    std::deque<OwnedBrick*> lately_;  ///< bricks that keep their samples
     std::atomic<std::int64_t> filling_ns_{0};
 };
 

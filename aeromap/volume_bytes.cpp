@@ -106,7 +106,7 @@ std::unique_ptr<OwnedBrick> take_brick(std::string_view& bytes) {
     return brick;
 }
 
-std::string bytes_of(VolumeBricks& bricks, const std::vector<std::size_t>& numbers) {
+std::string bytes_of(const VolumeBricks& bricks, const std::vector<std::size_t>& numbers) {
     std::string bytes;
     append_count(bytes, volume_format);
     for (const std::uint32_t cells : bricks.grid().cells) {
@@ -114,12 +114,12 @@ std::string bytes_of(VolumeBricks& bricks, const std::vector<std::size_t>& numbe
     }
     append_count(bytes, numbers.size());
     for (const std::size_t number : numbers) {
+        const OwnedBrick* const brick = bricks.owned(number);
         append_count(bytes, number);
-        append_count(bytes, bricks.is_calm(number) ? 1 : 0);
-        if (!bricks.is_calm(number)) {
-            const OwnedBrick& brick = bricks.owned(number);
-            const std::scoped_lock lock(brick.mutex);
-            for (const VolumeNode& cell : brick.cells) {
+        append_count(bytes, brick == nullptr ? 1 : 0);
+        if (brick != nullptr) {
+            const std::scoped_lock lock(brick->mutex);
+            for (const VolumeNode& cell : brick->cells) {
                 append_node(bytes, cell);
             }
         }

@@ -29,11 +29,19 @@ namespace downwash {
 /// jumps are evaluated directly. Safe to share between threads.
 class DOWNWASH_EXPORT VolumeMap {
  public:
+    /// A map's bricks need half a gigabyte of addresses at most, of which only those become memory that are near a
+    /// place asked for.
+    static constexpr std::size_t max_bricks = std::size_t{1} << 26U;
+    /// The volume of the largest map, in cubes with edges of R.
+    static constexpr double largest_radii3 = max_bricks * 1.8 * 1.8 * 1.8;
+    /// Whether a block is small enough for a map.
+    [[nodiscard]] static bool fits(const Bounds& extent, double lateral_low_m, double lateral_high_m, double radius_m);
+
     /// Fills nothing, and looks at nothing in the scene.
     /// @param frame x and z are those of its plane; the block reaches from `lateral_low_m` to `lateral_high_m` to its
     /// left. Boxes need fewest values where the frame's axes are those of the structure
     /// @param effect of a multirotor model: it is that of a vehicle at one heading (see neighbours_of)
-    /// @throws InputError if the block is empty or not finite, or needs more than 4 million bricks
+    /// @throws InputError if the block is empty or not finite, or does not fit
     VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const Bounds& extent,
               double lateral_low_m, double lateral_high_m);
 

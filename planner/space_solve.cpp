@@ -1,10 +1,13 @@
 #include "downwash/planner/space_solve.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "downwash/aeromap/volume_map.hpp"
+#include "downwash/base/text.hpp"
 #include "downwash/planner/any_order.hpp"
 #include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goals_in_order.hpp"
@@ -18,8 +21,31 @@ namespace {
 
 using planning::Space;
 
+/// Where hubs get while the vehicle is within its bounds.
+struct HubSpace {
+    Bounds extent;
+    double y_low_m, y_high_m;
+};
+
+HubSpace hub_space(const SpaceProblem& problem) {
+    double reach_m = 0;  // of hubs, from the multirotor's centre of mass
+    for (const SpaceRotor& rotor : problem.robot.plant.rotors) {
+        reach_m = std::max(reach_m, std::sqrt(dot(rotor.position_m, rotor.position_m)));
+    }
+    const Vector3& low_m = problem.bounds.low_m;
+    const Vector3& high_m = problem.bounds.high_m;
+    return {{low_m[0] - reach_m, high_m[0] + reach_m, low_m[2] - reach_m, high_m[2] + reach_m},
+            low_m[1] - reach_m,
+            high_m[1] + reach_m};
+}
+
 bool certifies(const SpaceProblem& problem) {
     return problem.uncertainty && problem.planner.certify;
+}
+
+/// Whether there are flights through maps of surface effects.
+bool makes_volumes(const SpaceProblem& problem) {
+    return problem.aero.enabled && (problem.planner.variant == Variant::mp_arm_ada || has_surface_effects(problem));
 }
 
 /// Whether flights of a search, of its certificates or of stops are among surfaces.
@@ -40,16 +66,9 @@ bool has_surface_effects(const SpaceProblem& problem) {
 
 std::shared_ptr<const SurfaceVolumes> make_volumes(const SpaceProblemModel& model, const std::filesystem::path& cache) {
     const SpaceProblem& problem = model.problem();
-    double reach_m = 0;  // of hubs, from the multirotor's centre of mass
-    for (const SpaceRotor& rotor : problem.robot.plant.rotors) {
-        reach_m = std::max(reach_m, std::sqrt(dot(rotor.position_m, rotor.position_m)));
-    }
-    const Vector3& low_m = problem.bounds.low_m;
-    const Vector3& high_m = problem.bounds.high_m;
-    const auto volumes = std::make_shared<SurfaceVolumes>(
-        model.shared_scene(), problem.aero, problem.robot, PlaneOfMotion{},
-        Bounds{low_m[0] - reach_m, high_m[0] + reach_m, low_m[2] - reach_m, high_m[2] + reach_m}, low_m[1] - reach_m,
-        high_m[1] + reach_m);
+    const HubSpace hubs = hub_space(problem);
+    const auto volumes = std::make_shared<SurfaceVolumes>(model.shared_scene(), problem.aero, problem.robot,
+                                                          PlaneOfMotion{}, hubs.extent, hubs.y_low_m, hubs.y_high_m);
     volumes->read(cache);
     return volumes;
 }
@@ -64,6 +83,14 @@ std::vector<KeyError> space_planning_errors(const SpaceProblem& problem) {
         share != planner.parameters.end() && share->second > 0) {
         errors.push_back({"planner.parameters.passage_share",
                           "is above 0, and narrow passages are not looked for in space yet: expected 0"});
+    }
+    const HubSpace hubs = hub_space(problem);
+    const double radius_m = problem.robot.rotor_radius_m;
+    if (makes_volumes(problem) && !VolumeMap::fits(hubs.extent, hubs.y_low_m, hubs.y_high_m, radius_m)) {
+        const auto volume_m3 = static_cast<std::int64_t>(VolumeMap::largest_radii3 * radius_m * radius_m * radius_m);
+        errors.push_back({"environment.bounds", "are too large for maps of surface effects on rotors of " +
+                                                    to_text(radius_m, 4) + " m: expected at most some " +
+                                                    std::to_string(volume_m3) + " m3"});
     }
     return errors;
 }

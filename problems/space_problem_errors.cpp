@@ -16,6 +16,7 @@
 #include "downwash/problems/buried_goals.hpp"
 #include "downwash/problems/number_text.hpp"
 #include "downwash/problems/shared_checks.hpp"
+#include "downwash/problems/slip_warnings.hpp"
 #include "downwash/problems/space_goal_parameters.hpp"
 #include "downwash/problems/space_goal_warnings.hpp"
 #include "downwash/problems/space_hover_warnings.hpp"
@@ -465,12 +466,14 @@ Errors space_problem_errors(const SpaceProblem& problem) {
 
 Errors space_problem_warnings(const SpaceProblem& problem) {
     Errors warnings = space_robot_warnings(problem.robot);
+    append(warnings, robot_slips(problem.robot));
     for (KeyError& warning : warnings) {
         warning.key.insert(0, "robot.");
     }
     append(warnings, no_margin(problem));
     append(warnings, space_goal_warnings(problem));
     append(warnings, space_hover_warnings(problem));
+    append(warnings, problem_slips(problem));
     return warnings;
 }
 

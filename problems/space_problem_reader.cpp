@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "downwash/base/files.hpp"
+#include "downwash/problems/slip_warnings.hpp"
 #include "downwash/problems/space_problem_parameters.hpp"
 #include "downwash/problems/text_checks.hpp"
 #include "downwash/problems/tree_reader.hpp"
@@ -101,6 +102,7 @@ SpaceRobot read_space_robot(const std::filesystem::path& file,
     throw_errors(reader);
     if (on_warning) {
         std::vector<KeyError> warnings = space_robot_warnings(reader.model().robot);
+        append(warnings, robot_slips(reader.model().robot));
         for (KeyError& warning : warnings) {
             warning.key.insert(0, "robot.");
         }

@@ -130,7 +130,7 @@ Findings findings_in(const std::string& path) {
         if (kind == "robot" && is_space_robot_file(path)) {
             found.space_robot = read_space_robot(path, on_warning);
         } else if (kind == "problem" && is_space_problem_file(path)) {
-            found.space_problem = read_space_problem(path, {}, on_warning);
+            found.space_problem = read_space_problem(path, {}, on_warning, space_planning_errors);
         } else if (kind == "robot") {
             found.robot = read_robot(path, on_warning);
         } else if (kind == "campaign") {

@@ -300,8 +300,13 @@ TEST_CASE("In a girder bay a volume is within 0.01 by side, and knows where one 
     CHECK(map.memory_bytes() < 8'000'000);
 
     SECTION("far from all surfaces bricks take no memory") {
-        const std::size_t bytes = map.memory_bytes();
         CHECK(map.factor({-4, -5, 0.3}) == 1);
+        const std::size_t bytes = map.memory_bytes();  // with the page of their places
+        const std::size_t bricks = map.filled_bricks();
+        for (const double x_m : {-5.0, -3.0, -2.0, 3.0, 5.0}) {
+            CHECK(map.factor({x_m, -5, 0.3}) == 1);
+        }
+        CHECK(map.filled_bricks() == bricks + 5);
         CHECK(map.memory_bytes() == bytes);
     }
     SECTION("the cache gives back what was filled, to the last bit") {
@@ -374,4 +379,22 @@ TEST_CASE("A volume of walls is within 0.01 of the vector towards the nearest wa
         longest = std::max(longest, -direct[0]);
     }
     CHECK(longest > 0.99);
+}
+
+TEST_CASE("A large volume takes memory where somebody asks, and one too large is refused") {
+    const auto effect = effect_in({{"ground", Box{{400, 400, 1}}, {0, 0, -0.5}, {}}}, 0.1);
+    const Bounds wide{-50, 50, 0, 50};
+    REQUIRE(VolumeMap::fits(wide, -35, 35, 0.1));
+    const VolumeMap map(effect, {}, wide, -35, 35);
+    CHECK(map.bricks() > 50'000'000);
+    const Vector3 corner{49.9, 34.9, 0.15};
+    CHECK(map.factor(corner) == Approx(effect->factor(corner)).margin(0.01));
+    CHECK(map.filled_bricks() == 1);
+    CHECK(map.memory_bytes() < 100'000);
+    VolumeMap same = map.unfilled();
+    REQUIRE(same.add_bytes(map.to_bytes()));
+    CHECK(same.to_bytes() == map.to_bytes());
+
+    CHECK_FALSE(VolumeMap::fits(wide, -70, 70, 0.1));
+    CHECK_THROWS_AS(VolumeMap(effect, {}, wide, -70, 70), InputError);
 }

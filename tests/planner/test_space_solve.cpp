@@ -117,4 +117,11 @@ TEST_CASE("what cannot be planned in space yet is refused by the key that asks f
     problem.planner.algorithm = "rrt";
     problem.motion.yaw.mode = YawMode::along;
     CHECK(refused(problem) == std::vector<std::string>{"motion.yaw"});
+    problem = girder();
+    problem.bounds = {{-30, -30, 0}, {30, 30, 50}};
+    CHECK(refused(problem).empty());
+    problem.bounds = {{-2e4, -2e4, 0}, {2e4, 2e4, 1e4}};
+    CHECK(refused(problem) == std::vector<std::string>{"environment.bounds"});
+    problem.aero.enabled = false;  // no map then
+    CHECK(refused(problem).empty());
 }

@@ -14,14 +14,15 @@ using Catch::StartsWith;
 
 namespace {
 
-/// Warnings of goals as "line:column: message".
-std::vector<std::string> warnings_of(const std::string& problem, const std::string& robot) {
+/// Warnings of keys that begin so, as "line:column: message".
+std::vector<std::string> warnings_of(const std::string& problem, const std::string& robot,
+                                     const std::string& keys = "goal") {
     const TestFolder folder;
     folder.write("problem.yaml", problem);
     folder.write("robot.yaml", robot);
     std::vector<std::string> warnings;
     static_cast<void>(read_space_problem(folder / "problem.yaml", {}, [&](const LocatedError& warning) {
-        if (warning.message.starts_with("goal")) {
+        if (warning.message.starts_with(keys)) {
             warnings.push_back(std::to_string(warning.line) + ":" + std::to_string(warning.column) + ": " +
                                warning.message);
         }
@@ -109,4 +110,46 @@ TEST_CASE("a direction that the joints do not allow is an error with the range t
     CHECK_THAT(space_errors(TestFolder(), pose, good_space_robot),
                StartsWith("problem.yaml:11:45: goal.pose.rpy_deg is an attitude that the level robot misses by 60 "
                           "degrees at any yaw, with its joints within their limits; the nearest one is ["));
+}
+
+TEST_CASE("what a value in space counts for nothing beside, or what is likely in another unit, is a warning") {
+    const std::string robot(good_space_robot);
+    const auto start = [](const std::string& with) {
+        return edited(good_space_problem, "yaw_deg: 30, joints_deg: [20, -10]", with);
+    };
+    CHECK(warnings_of(start("yaw_deg: 90, attitude: [2, 0, 0, 2], joints_deg: [20, -10]"), robot, "start").empty());
+    CHECK(warnings_of(start("yaw_deg: 30, attitude: [2, 0, 0, 2], joints_deg: [20, -10]"), robot, "start") ==
+          std::vector<std::string>{"9:43: start.yaw_deg counts for nothing beside start.attitude, whose yaw is 90 "
+                                   "degrees; leave one of them out"});
+    CHECK(warnings_of(start("yaw_deg: 1.571, joints_deg: [20, -0.785]"), robot, "start") ==
+          std::vector<std::string>{"9:43: start.yaw_deg is 1.571 degrees: if these are radians, it is 90.01",
+                                   "9:62: start.joints_deg is -0.785 degrees: if these are radians, it is -44.98"});
+
+    const auto targets = [](const std::string& second, const std::string& more = "") {
+        return edited(good_space_problem, goal,
+                      "  in_any_order:\n    - end_effector: {position_m: [3, -2, 2.5]}\n    - " + second + "\n" + more);
+    };
+    const std::string other = "end_effector: {position_m: [2, -2, 2.5]}";
+    CHECK(warnings_of(targets(other, "  energy_budget_j: 20000"), robot).empty());
+    CHECK(
+        warnings_of(targets("end_effector: {position_m: [3, -2, 2.5]}"), robot) ==
+        std::vector<std::string>{"13:7: goal.in_any_order[1] is the same as goal.in_any_order[0], so the vehicle goes "
+                                 "there twice; leave one of them out"});
+    CHECK(
+        warnings_of(targets("end_effector: {position_m: [2, -2, 2.5], direction_tolerance_deg: 3}"), robot) ==
+        std::vector<std::string>{"13:73: goal.in_any_order[1].end_effector.direction_tolerance_deg counts for nothing "
+                                 "without goal.in_any_order[1].end_effector.direction; give one"});
+    CHECK(warnings_of(targets("camera: {target_m: [3, -2, 2], distance_m: [1, 2], view_cone_deg: 20}"), robot) ==
+          std::vector<std::string>{"13:73: goal.in_any_order[1].camera.view_cone_deg counts for nothing without "
+                                   "goal.in_any_order[1].camera.direction; give one"});
+    // Four rotors that lift a quarter of 2.3 kg each: 5 W/N^1.5 * 4 * 5.64^1.5 N = 268 W.
+    CHECK(warnings_of(targets(other, "  energy_budget_j: 20"), robot) ==
+          std::vector<std::string>{"14:20: goal.energy_budget_j is 20: expected joules (1 kJ is 1000, 1 Wh is 3600); a "
+                                   "hover in free air takes 267.8 W, so the hovers at one target take about 1339 J by "
+                                   "themselves"});
+
+    CHECK(warnings_of(start("joints_deg: [20, 0]"), edited(robot, "limits_deg: [-90, 90]", "limits_deg: [-1.6, 1.6]"),
+                      "arm") ==
+          std::vector<std::string>{"20:95: arm.links[1].limits_deg lets the arm turn by 3.2 degrees only: expected "
+                                   "degrees; if these are radians, it is [-91.67, 91.67]"});
 }
