@@ -14,3 +14,8 @@ def run(program, *arguments):
     except json.JSONDecodeError:
         script = pathlib.Path(sys.argv[0]).name
         raise SystemExit(f"bench/{script}: {' '.join(map(str, arguments))}: {done.stderr}") from None
+
+
+def print_bound(bound, found, is_kept):
+    """A row as bench/bars.sh reads it."""
+    print(f"| {bound} | {found} | {'kept' if is_kept else '**not kept**'} |")

@@ -13,7 +13,7 @@ import statistics
 import tempfile
 
 import yaml
-from program import run
+from program import print_bound, run
 
 TREE = pathlib.Path(__file__).resolve().parent.parent
 PROBLEMS = TREE / "problems"
@@ -154,11 +154,6 @@ def print_bounds(turned, planar):
     print_bound("a planar problem written in space costs no more than in the plane",
                 ", ".join(f"{table.title} {table.ratios[0]:.3f} (p {table.p_values[0]:.3f})" for table in planar),
                 not any(costs_more))
-
-
-def print_bound(bound, found, is_kept):
-    """A row as bench/bars.sh reads it."""
-    print(f"| {bound} | {found} | {'kept' if is_kept else '**not kept**'} |")
 
 
 def main():
