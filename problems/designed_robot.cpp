@@ -94,7 +94,7 @@ auto read(const ParameterTable<Model>& table, const std::filesystem::path& file,
 void design_controller(SpaceRobot& robot, const SpaceBandwidths& bandwidths, const std::optional<std::string>& law) {
     const bool is_cascade = law ? *law == Px4Cascade::name : std::holds_alternative<Px4Cascade>(robot.controller.law);
     if (is_cascade) {
-        robot.controller.law = cascade_gains_for(robot.plant.time_constant_s, bandwidths);
+        robot.controller.law = designed_cascade(robot, bandwidths);
     } else {
         robot.controller.law = designed_inversion(robot, bandwidths);
     }

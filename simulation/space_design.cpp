@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <cstddef>
+#include <functional>
 #include <numbers>
 
 #include "downwash/base/infinity.hpp"
@@ -124,6 +125,38 @@ double highest(const SpaceLinkLimits& link) {
     return link.is_limited ? link.upper_limit_rad : std::numbers::pi;
 }
 
+/// Visits 512 poses that are spread evenly over the limits of the joints, and all in which every joint is in its middle
+/// or at an end. None without joints.
+void for_each_pose(const SpaceRobot& robot, const std::function<void(const std::vector<double>& joints_rad)>& visit) {
+    const std::size_t count = robot.links.size();
+    constexpr int poses = 512;
+    for (int pose = 0; pose < (count == 0 ? 0 : poses); ++pose) {
+        std::vector<double> q;
+        for (std::size_t i = 0; i < count; ++i) {
+            // Multiples of different irrational numbers fill the space of joints evenly.
+            const double turns = (pose + 0.5) * std::sqrt(2.0 + 3.0 * static_cast<double>(i));
+            q.push_back(std::lerp(lowest(robot.links[i]), highest(robot.links[i]), turns - std::floor(turns)));
+        }
+        visit(q);
+    }
+    // Arms hang and stand straight at round angles.
+    std::vector<std::size_t> which(count);
+    for (bool is_over = count == 0; !is_over;) {
+        std::vector<double> q;
+        for (std::size_t i = 0; i < count; ++i) {
+            const double low = lowest(robot.links[i]), high = highest(robot.links[i]);
+            const double angles[] = {low, std::clamp(0.0, low, high), high};
+            q.push_back(angles[which[i]]);
+        }
+        visit(q);
+        std::size_t i = 0;
+        while (i < count && ++which[i] == 3) {
+            which[i++] = 0;
+        }
+        is_over = i == count;
+    }
+}
+
 }  // namespace
 
 double joint_stiffness_asked_1_s2(const SpaceRobot& robot, const std::vector<double>& joints_rad) {
@@ -158,34 +191,10 @@ double joint_stiffness_asked_1_s2(const SpaceRobot& robot, const std::vector<dou
 }
 
 double greatest_joint_stiffness_asked_1_s2(const SpaceRobot& robot) {
-    const std::size_t count = robot.links.size();
-    constexpr int poses = 512;
     double most_1_s2 = 0;
-    for (int pose = 0; pose < (count == 0 ? 0 : poses); ++pose) {
-        std::vector<double> q;
-        for (std::size_t i = 0; i < count; ++i) {
-            // Multiples of different irrational numbers fill the space of joints evenly.
-            const double turns = (pose + 0.5) * std::sqrt(2.0 + 3.0 * static_cast<double>(i));
-            q.push_back(std::lerp(lowest(robot.links[i]), highest(robot.links[i]), turns - std::floor(turns)));
-        }
-        most_1_s2 = std::max(most_1_s2, joint_stiffness_asked_1_s2(robot, q));
-    }
-    // Arms hang and stand straight at round angles.
-    std::vector<std::size_t> which(count);
-    for (bool is_over = count == 0; !is_over;) {
-        std::vector<double> q;
-        for (std::size_t i = 0; i < count; ++i) {
-            const double low = lowest(robot.links[i]), high = highest(robot.links[i]);
-            const double angles[] = {low, std::clamp(0.0, low, high), high};
-            q.push_back(angles[which[i]]);
-        }
-        most_1_s2 = std::max(most_1_s2, joint_stiffness_asked_1_s2(robot, q));
-        std::size_t i = 0;
-        while (i < count && ++which[i] == 3) {
-            which[i++] = 0;
-        }
-        is_over = i == count;
-    }
+    for_each_pose(robot, [&](const std::vector<double>& joints_rad) {
+        most_1_s2 = std::max(most_1_s2, joint_stiffness_asked_1_s2(robot, joints_rad));
+    });
     return most_1_s2;
 }
 
@@ -230,6 +239,26 @@ SpaceInversion designed_inversion(const SpaceRobot& robot, SpaceBandwidths wante
         }
     }
     return best;
+}
+
+Px4Cascade designed_cascade(const SpaceRobot& robot, const SpaceBandwidths& wanted) {
+    Px4Cascade law = cascade_gains_for(robot.plant.time_constant_s, wanted);
+    const Eigen::LDLT<Matrix3d> inertia = matrix_of(robot.plant.multirotor.inertia_kg_m2).ldlt();
+    for_each_pose(robot, [&](const std::vector<double>& joints_rad) {
+        constexpr double reserve = 1.5;  // for what lifts unlike, and for gusts
+        const MatrixXd mass = mass_matrix(robot.plant, joints_rad);
+        const VectorXd weighs = reserve * standard_gravity_m_s2 * mass.col(2);
+        const auto count = static_cast<Eigen::Index>(joints_rad.size());
+        const VectorXd turns = inertia.solve(weighs.segment<3>(3));
+        const VectorXd joints = mass.bottomRightCorner(count, count).ldlt().solve(weighs.tail(count));
+        const auto raise = [](double& limit, double asked) {
+            constexpr double highest_limit = 1e4;  // of the key
+            limit = std::clamp(asked, limit, highest_limit);
+        };
+        raise(law.rate.integral_limit, turns.head<2>().cwiseAbs().maxCoeff());
+        raise(law.joint.integral_limit, joints.cwiseAbs().maxCoeff());
+    });
+    return law;
 }
 
 }  // namespace downwash

@@ -31,4 +31,8 @@ namespace downwash {
 /// no integral beside an observer, which integrates already.
 [[nodiscard]] DOWNWASH_EXPORT SpaceInversion designed_inversion(const SpaceRobot& robot, SpaceBandwidths wanted = {});
 
+/// The gains of PX4's cascade for a robot (cascade_gains_for()). Its integrals carry the arm, so their limits are at
+/// least half as much again as any pose of the arm asks of roll, pitch and the joints while the robot hovers.
+[[nodiscard]] DOWNWASH_EXPORT Px4Cascade designed_cascade(const SpaceRobot& robot, const SpaceBandwidths& wanted);
+
 }  // namespace downwash

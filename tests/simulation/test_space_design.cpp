@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
@@ -6,6 +7,7 @@
 #include "../support/space_robots.hpp"
 #include "downwash/simulation/space_design.hpp"
 #include "downwash/simulation/space_hover.hpp"
+#include "downwash/simulation/space_statics.hpp"
 
 using namespace downwash;
 using namespace downwash::test;
@@ -45,4 +47,34 @@ TEST_CASE("Designed joints are as fast as the arm asks for and the delay allows,
     CHECK(given.joint.ki_1_s3 > 0);
     CHECK(given.observer_gain_1_s == 0);
     CHECK(given.rate_kp_1_s == 10);
+}
+
+TEST_CASE("The integrals of a designed cascade carry the arm in any pose") {
+    Random random(3);
+    for (const double heavy : {0.1, 1.0, 30.0}) {
+        SpaceRobot robot = space_robot(2);
+        for (SpaceLink& link : robot.plant.links) {
+            link.body.mass_kg *= heavy;
+        }
+        const Px4Cascade law = designed_cascade(robot, {});
+        const Px4Cascade alone = cascade_gains_for(robot.plant.time_constant_s, {});
+        CHECK(law.velocity.integral_limit == alone.velocity.integral_limit);
+        double most_rad_s2 = 0;
+        for (int i = 0; i < 200; ++i) {
+            std::vector<double> joints_rad(robot.links.size());  // which turn without limits
+            for (double& joint_rad : joints_rad) {
+                joint_rad = random.uniform(-std::numbers::pi, std::numbers::pi);
+            }
+            const Vector3 center_m = center_of_mass_m(robot, arm_pose(robot, joints_rad));
+            const double weight_n = robot.mass_kg() * standard_gravity_m_s2;
+            const Matrix3& inertia = robot.plant.multirotor.inertia_kg_m2;
+            most_rad_s2 = std::max({most_rad_s2, weight_n * std::abs(center_m[1]) / inertia[0][0],
+                                    weight_n * std::abs(center_m[0]) / inertia[1][1]});
+        }
+        CAPTURE(heavy, most_rad_s2, law.rate.integral_limit, law.joint.integral_limit);
+        CHECK(law.rate.integral_limit >= 1.4 * most_rad_s2);
+        CHECK(law.rate.integral_limit <= std::max(alone.rate.integral_limit, 2 * most_rad_s2));
+        CHECK((law.rate.integral_limit > alone.rate.integral_limit) == (heavy >= 1));
+    }
+    CHECK(designed_cascade(space_robot(0), {}).rate.integral_limit == cascade_gains_for(0.02, {}).rate.integral_limit);
 }
