@@ -72,6 +72,8 @@ TEST_CASE("a flight of the judge tells the vehicle that flew it") {
     // A vehicle without an arm turns in yaw by drag torque, which is that of the file: this tells thrust, and so the
     // mass.
     CHECK(number_of(found, "vehicle.thrust_scale").is_learned);
+    CHECK(
+        std::ranges::none_of(found.left_out, [](const std::string& each) { return each.starts_with("sensing and"); }));
 }
 
 TEST_CASE("a hover does not tell mass from thrust, and the answer says so") {
@@ -108,6 +110,7 @@ TEST_CASE("a log of the true motion tells neither delay nor biases") {
     CHECK_FALSE(number_of(found, "vehicle.delay_s").is_learned);
     CHECK_FALSE(number_of(found, "sensing.yaw_bias_deg").is_learned);
     CHECK(found.noise.empty());
+    CHECK_THAT(found.left_out.back(), Contains("the logs have the true motion"));
     const IdentifiedNumber& lag = number_of(found, "vehicle.rotor_time_constant_s");
     CHECK(lag.is_learned);
     CHECK(lag.value == Approx(0).margin(4 * lag.sd));
