@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,8 @@
 #include "downwash/scene/space_checker.hpp"
 #include "downwash/simulation/goal.hpp"
 #include "downwash/simulation/space_goal_reach.hpp"
+#include "downwash/simulation/space_press.hpp"
+#include "downwash/simulation/space_touch_place.hpp"
 
 namespace downwash {
 namespace {
@@ -65,12 +68,51 @@ class GoalCheck {
     [[nodiscard]] std::optional<SpaceGoalObjection> objection(const SpaceGoal& goal) const {
         const double margin_m = problem_.planner.safety_margin_m;
         SpaceGoalReach reach = goal_reach(problem_.robot, problem_.bounds, scene_, checker_, margin_m, goal);
+        if (!reach.objection) {
+            reach.objection = too_strong(goal);
+        }
         return reach.objection ? std::move(reach.objection) : cut_off(goal);
     }
 
  private:
     [[nodiscard]] Vector3 center_at(const SpacePose& pose) const {
         return pose.position_m + rotation_of(pose.attitude) * ball_.center_m;
+    }
+
+    /// That the robot cannot press so hard at any of some free configurations of a contact.
+    [[nodiscard]] std::optional<SpaceGoalObjection> too_strong(const SpaceGoal& goal) const {
+        const auto* contact = std::get_if<SpaceContactGoal>(&goal.kind);
+        if (contact == nullptr) {
+            return std::nullopt;
+        }
+        std::vector<Obstacle> named;
+        std::ranges::copy_if(problem_.obstacles, std::back_inserter(named),
+                             [&](const Obstacle& obstacle) { return obstacle.name == contact->obstacle; });
+        const Scene alone(std::move(named));
+        constexpr int places = 20;
+        const SpaceGoalSampler sampler(problem_.robot, problem_.bounds, scene_, checker_,
+                                       problem_.planner.safety_margin_m, goal);
+        Random random(3);
+        std::string lack;
+        for (int i = 0; i < places; ++i) {
+            const auto place = sampler.sample(random, 0).place;
+            if (!place) {
+                continue;
+            }
+            const SpacePose waiting = level_at(place->at);
+            const FoundTouch found = find_touch(*contact, goal.hold_s, problem_.robot, waiting, alone);
+            if (!found.touch) {
+                continue;
+            }
+            lack = lacks_to_press(problem_.robot, waiting, *found.touch);
+            if (lack.empty()) {
+                return std::nullopt;
+            }
+        }
+        return lack.empty() ? std::nullopt
+                            : std::optional(SpaceGoalObjection{
+                                  "force_n", lack + ", at each of " + std::to_string(places) +
+                                                 " places that were tried; press less, or give the robot more"});
     }
 
     /// That no way leads from the start to any of some free configurations of a goal.

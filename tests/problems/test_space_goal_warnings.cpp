@@ -98,6 +98,20 @@ TEST_CASE("a goal in space behind a wall is a warning with the wall") {
     CHECK(warnings_of(with_obstacle("{name: wall, box: {size_m: [0.01, 20, 4], center_m: [0, 0, 2]}}"), robot).empty());
 }
 
+TEST_CASE("a force that the robot cannot press with is a warning with what it lacks") {
+    const auto pressed = [](const std::string& force_n) {
+        return edited(edited(good_space_problem, goal, "  contact: {obstacle: wall, force_n: " + force_n + "}"), pole,
+                      "    - {name: wall, box: {size_m: [1, 6, 6], center_m: [5, 0, 2]}}\n" + std::string(pole));
+    };
+    const std::string robot(good_space_robot);
+    CHECK(warnings_of(pressed("2"), robot).empty());
+    const std::vector<std::string> warnings = warnings_of(pressed("100"), robot);
+    REQUIRE(warnings.size() == 1);
+    // The weight of 2.3 kg and 100 N across it: 102.5 N of four times 12 N.
+    CHECK_THAT(warnings[0], StartsWith("12:38: goal.contact.force_n takes 103 N of thrust, and its rotors give 48 N at "
+                                       "most, at each of 20 places that were tried; press less"));
+}
+
 TEST_CASE("a direction that the joints do not allow is an error with the range that they do") {
     const std::string stiff = edited(good_space_robot, "limits_deg: [-120, 120]", "limits_deg: [-30, 30]");
     CHECK(space_errors(TestFolder(), good_space_problem, stiff) ==

@@ -5,6 +5,8 @@
 
 #include "../support/space_robots.hpp"
 #include "downwash/simulation/space_goal_rule.hpp"
+#include "downwash/simulation/space_press.hpp"
+#include "downwash/simulation/space_statics.hpp"
 #include "downwash/simulation/space_tool.hpp"
 #include "downwash/simulation/space_touch_place.hpp"
 
@@ -191,6 +193,53 @@ TEST_CASE("A target belongs to what it lies on, up to two centimetres deep, and 
                             std::sin(2 * degree) + 3.5 * std::cos(2 * degree) - 2.5)));
     // Other goals stay where they are.
     CHECK(is_met_at(SpaceEndEffectorGoal{{1, 2.5, 2.9}, 0.01, {}, 1}, to_the_left(), {}, world));
+}
+
+TEST_CASE("What a robot lacks to press is what statics by hand say") {
+    SpaceRobot robot = pointing_robot();
+    robot.plant.end_effector_m = {0.5, 0, 0.2};  // at (1, 2.5, 3.1)
+    robot.links[0].max_torque_nm = 1e3;
+    robot.min_thrust_n.assign(robot.min_thrust_n.size(), 0);
+    SpaceContactGoal goal;
+    goal.obstacle = "wall";
+    const FoundTouch found =
+        find_touch(goal, 3, robot, to_the_left(), scene_of({turned_box("wall", {4, 1, 4}, {1, 3.32, 3})}));
+    REQUIRE(found.touch);
+    const auto lack = [&](double force_n) {
+        SpaceTouch touch = *found.touch;
+        touch.force_n = force_n;
+        return lacks_to_press(robot, to_the_left(), touch);
+    };
+    using Catch::Contains;
+    using Catch::StartsWith;
+    const double weight_n = robot.mass_kg() * standard_gravity_m_s2;
+    const double rotors = static_cast<double>(robot.max_thrust_n.size());
+    CHECK(lack(0).empty());
+    // Thrust carries the weight and leans against the wall.
+    robot.max_thrust_n.assign(robot.max_thrust_n.size(), 2 * weight_n / rotors);
+    const double whole_n = weight_n * std::sqrt(3.0);
+    CHECK_THAT(lack(1.001 * whole_n), Contains(" N of thrust, and its rotors give "));
+    CHECK_THAT(lack(0.999 * whole_n), StartsWith("takes a tilt of 60 degrees, and its controller allows "));
+    auto& law = std::get<SpaceInversion>(robot.controller.law);
+    law.max_tilt_rad = 50 * degree;
+    robot.max_thrust_n.assign(robot.max_thrust_n.size(), 100 * weight_n);
+    const double leaning_n = weight_n * std::tan(50 * degree);
+    CHECK_THAT(lack(1.001 * leaning_n), StartsWith("takes a tilt of 50 degrees"));
+    CHECK_THAT(lack(0.999 * leaning_n), !Contains("tilt"));
+    // The force is 0.2 m above the joint, which holds the weight of its link besides.
+    const SpacePose pose = to_the_left();
+    const ArmPose arm = arm_pose(robot, {pose.joints_rad.begin(), pose.joints_rad.begin() + robot.joints()});
+    const double weighs_nm = std::abs(holding_torque_nm(robot, arm, 0));
+    robot.links[0].max_torque_nm = 1;
+    law.max_tilt_rad = 89 * degree;
+    robot.min_thrust_n.assign(robot.min_thrust_n.size(), -100 * weight_n);
+    const double held_n = (1 + weighs_nm) / 0.2;
+    CHECK_THAT(lack(1.001 * held_n), StartsWith("takes 1 N m of joint 1, which gives 1 N m at most"));
+    CHECK(lack(0.999 * held_n).empty());
+    // All rotors together have enough, but the moments of arm and force take more of some of them.
+    robot.links[0].max_torque_nm = 1e3;
+    robot.max_thrust_n.assign(robot.max_thrust_n.size(), 1.05 * std::hypot(weight_n, 0.5 * weight_n) / rotors);
+    CHECK_THAT(lack(0.5 * weight_n), Contains(" N of rotor "));
 }
 
 TEST_CASE("A robot touches the nearest point of an obstacle along its normal") {
