@@ -3,10 +3,8 @@
 import * as three from "three";
 
 import {number, place, quantity} from "../format.js";
-import {make_camera} from "./camera.js";
 import {axis_names, draw_floor, floor_of} from "./floor.js";
-import {lights, make_canvas, palettes} from "./look.js";
-import {make_names} from "./names.js";
+import {make_picture} from "./picture.js";
 import {draw_line} from "./solids.js";
 import {draw_space_robot} from "./space_robot.js";
 
@@ -81,12 +79,8 @@ function draw_reach({facts, report}, paint) {
 /** @param {HTMLElement} stage */
 export function start(stage, model, pose) {
     const {robot, size_m, joints, facts} = model;
-    const painted = [];
-    const paint = (material, name) => painted.push([material, name]);
-    // The buffer stays for prints.
-    const renderer = new three.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
-    const canvas = make_canvas(renderer);
-    canvas.setAttribute("aria-label", "The robot in three dimensions; its numbers stand in the tables of this page.");
+    const picture = make_picture("The robot in three dimensions; its numbers stand in the tables of this page.");
+    const {world, paint, render} = picture;
     const width_m = Math.max(robot.rotor_radius_m, ...robot.rotors.map(({position_m}) => Math.hypot(...position_m)));
     const points = outermost_points(model, width_m);
     const opening = {
@@ -96,8 +90,7 @@ export function start(stage, model, pose) {
     const floor = floor_of(opening);
     const direction = new three.Vector3(-0.75, 0.5, -0.42).normalize();
 
-    const world = new three.Scene();
-    world.add(...lights(), draw_floor(floor, paint));
+    world.add(draw_floor(floor, paint));
     const layers = {masses: new three.Group(), spins: new three.Group(), reach: new three.Group()};
     const hover_n = Math.max(...pose.state.thrusts_n);
     const vehicle = draw_space_robot(robot, paint, {meters_per_n: (thrust_share * width_m) / hover_n});
@@ -129,28 +122,8 @@ export function start(stage, model, pose) {
                 [whole_name]),
         ...axis_names(floor, opening, direction, 3));
 
-    let words = null, view = null, has_names = true;
-    const draw_now = (width, height) => {
-        renderer.render(world, view.camera);
-        words.element.style.display = has_names ? "" : "none";
-        if (has_names) {
-            words.draw(view.camera, width, height);
-        }
-    };
-    let is_waiting = false;
-    const render = () => {
-        if (!is_waiting) {
-            is_waiting = true;
-            requestAnimationFrame(() => {
-                is_waiting = false;
-                draw_now(stage.clientWidth, stage.clientHeight);
-            });
-        }
-    };
     const target = vector(axes.map((k) => (opening.low[k] + opening.high[k]) / 2));
-    view = make_camera(canvas, {target, size: 2 * size_m, corners: points.map(vector), direction}, render);
-    words = make_names(names, () => []);
-    stage.replaceChildren(canvas, words.element);
+    picture.frame(stage, {target, size: 2 * size_m, corners: points.map(vector), direction}, names, () => []);
 
     pose.follow(({joints_rad, centers_m, whole_m, thrusts_n}) => {
         vehicle.move({position_m: [0, 0, 0], attitude: [1, 0, 0, 0], joints_rad});
@@ -163,44 +136,19 @@ export function start(stage, model, pose) {
         });
         render();
     });
-    const draw_theme = (theme) => {
-        world.background = new three.Color(palettes[theme].paper);
-        painted.forEach(([material, name]) => material.color.set(palettes[theme][name]));
-    };
-    let theme = "light", is_framed = false;
     return {
-        home: view.home,
-        zoom_by: view.zoom_by,
-        look_along: (x, y, z) => view.look_along(new three.Vector3(x, y, z).normalize()),
+        ...picture.controls,
         note: `The grid is level at z ${place(floor.z_m)}; its squares are ${number(floor.step_m, "~r")}\u00a0m wide.`,
         show(id, is_on) {
             if (id === "names") {
-                has_names = is_on;
+                picture.show_names(is_on);
             } else {
                 const parts = {forces: vehicle.arrows, solids: vehicle.solids}[id] ?? [layers[id]];
                 parts.forEach((part) => {
                     part.visible = is_on;
                 });
+                render();
             }
-            render();
-        },
-        set_theme(next) {
-            theme = next;
-            draw_theme(theme);
-            render();
-        },
-        /** @param {boolean} on_paper draws at once, in light colours */
-        resize(width, height, on_paper) {
-            renderer.setPixelRatio(on_paper ? 2 : Math.min(2, window.devicePixelRatio || 1));
-            renderer.setSize(width, height, false);
-            view.camera.aspect = width / height;
-            view.camera.updateProjectionMatrix();
-            if (!is_framed) {
-                is_framed = true;
-                view.home();
-            }
-            draw_theme(on_paper ? "light" : theme);
-            draw_now(width, height);
         },
         tip: vehicle.tip,
         /** Where the whole centre of mass is drawn, for tests. */

@@ -6,10 +6,8 @@ import {isolated} from "../dom.js";
 import {number, place} from "../format.js";
 import {are_many} from "../surroundings.js";
 
-import {make_camera} from "./camera.js";
 import {axis_names, draw_floor, floor_of} from "./floor.js";
-import {lights, make_canvas, palettes} from "./look.js";
-import {make_names} from "./names.js";
+import {make_picture} from "./picture.js";
 import {draw_line, draw_solid, draw_together, draw_tube} from "./solids.js";
 import {draw_goal, place_of, reach_of} from "./space_goals.js";
 import {draw_space_robot} from "./space_robot.js";
@@ -172,15 +170,11 @@ function draw_cross(at, size_m, paint) {
 /** @param {HTMLElement} stage */
 export function start(stage, model, clock) {
     const {data, scene, robot} = model;
-    const painted = [];
-    const paint = (material, name) => painted.push([material, name]);
-    // The buffer stays for prints.
-    const renderer = new three.WebGLRenderer({antialias: true, preserveDrawingBuffer: true});
-    const canvas = make_canvas(renderer);
+    const picture = make_picture();
+    const {world, paint, render} = picture;
     const opening = opening_of(model), floor = floor_of(opening);
     const size_m = Math.max(...axes.map((k) => opening.high[k] - opening.low[k]));
 
-    const world = new three.Scene();
     const layers = {};
     const layer = (id, ...parts) => {
         layers[id] = new three.Group();
@@ -189,7 +183,7 @@ export function start(stage, model, clock) {
     };
     const obstacles = draw_obstacles(scene.obstacles, paint);
     const direction = clear_direction(model, obstacles);
-    world.add(...lights(), draw_floor(floor, paint));
+    world.add(draw_floor(floor, paint));
     layer("bounds", draw_bounds(scene.bounds, paint));
     layer("obstacles", obstacles);
     const goals = model.goals.map((goal) => draw_goal(goal, scene, robot, model.size_m, paint));
@@ -230,32 +224,14 @@ export function start(stage, model, clock) {
         }
     }
 
-    let names = null, view = null, has_names = true;
-    const draw_now = (width, height) => {
-        renderer.render(world, view.camera);
-        names.element.style.display = has_names ? "" : "none";
-        if (has_names) {
-            names.draw(view.camera, width, height);
-        }
-    };
-    let is_waiting = false;
-    const render = () => {
-        if (!is_waiting) {
-            is_waiting = true;
-            requestAnimationFrame(() => {
-                is_waiting = false;
-                draw_now(stage.clientWidth, stage.clientHeight);
-            });
-        }
-    };
     const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
         (i) => vector(axes.map((k) => ((i >> k) & 1) === 0 ? opening.low[k] : opening.high[k])));
     const target = vector(axes.map((k) => (opening.low[k] + opening.high[k]) / 2));
-    view = make_camera(canvas, {target, size: size_m, corners, direction}, render);
-    names = make_names(names_of(model, floor, opening, direction, stage.clientWidth < 500 ? 3 : 6), vehicle.covered);
-    stage.replaceChildren(canvas, names.element);
+    const view = picture.frame(
+        stage, {target, size: size_m, corners, direction},
+        names_of(model, floor, opening, direction, stage.clientWidth < 500 ? 3 : 6), vehicle.covered);
 
-    let is_framed = false, is_following = false;
+    let is_following = false;
     const show_row = (row) => {
         vehicle.move(model.pose_at(row));
         vehicle.push(model.thrusts_at(row));
@@ -268,15 +244,8 @@ export function start(stage, model, clock) {
         render();
     };
     clock?.follow(show_row);
-    const draw_theme = (theme) => {
-        world.background = new three.Color(palettes[theme].paper);
-        painted.forEach(([material, name]) => material.color.set(palettes[theme][name]));
-    };
-    let theme = "light";
     return {
-        home: view.home,
-        zoom_by: view.zoom_by,
-        look_along: (x, y, z) => view.look_along(new three.Vector3(x, y, z).normalize()),
+        ...picture.controls,
         step_m: floor.step_m,
         floor_m: floor.z_m,
         note:
@@ -292,33 +261,13 @@ export function start(stage, model, clock) {
         },
         show(id, is_on) {
             if (id === "names") {
-                has_names = is_on;
-            } else if (id === "forces") {
-                vehicle.arrows.forEach((arrow) => {
-                    arrow.visible = is_on;
-                });
-            } else {
-                layers[id].visible = is_on;
+                picture.show_names(is_on);
+                return;
             }
+            (id === "forces" ? vehicle.arrows : [layers[id]]).forEach((part) => {
+                part.visible = is_on;
+            });
             render();
-        },
-        set_theme(next) {
-            theme = next;
-            draw_theme(theme);
-            render();
-        },
-        /** @param {boolean} on_paper draws at once, in light colours */
-        resize(width, height, on_paper) {
-            renderer.setPixelRatio(on_paper ? 2 : Math.min(2, window.devicePixelRatio || 1));
-            renderer.setSize(width, height, false);
-            view.camera.aspect = width / height;
-            view.camera.updateProjectionMatrix();
-            if (!is_framed) {
-                is_framed = true;
-                view.home();
-            }
-            draw_theme(on_paper ? "light" : theme);
-            draw_now(width, height);
         },
         tip: vehicle.tip,
         goals: () =>
