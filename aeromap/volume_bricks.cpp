@@ -7,7 +7,6 @@
 #include <new>
 #include <utility>
 
-#include "downwash/aeromap/volume_map.hpp"
 #include "downwash/base/key_error.hpp"
 #include "downwash/base/parallel.hpp"
 
@@ -28,8 +27,6 @@ class TimeSpent {
     Clock::time_point begin_ = Clock::now();
 };
 
-constexpr double longest_radii = 0.45;  // of a cell's edge: no obstacle is missed
-
 void require_range(double low_m, double high_m, const char* axis) {
     if (!(std::isfinite(low_m) && std::isfinite(high_m) && low_m < high_m)) {
         throw_input_error(std::string("the volume's ") + axis + " must be two finite numbers, the lower one first");
@@ -37,7 +34,7 @@ void require_range(double low_m, double high_m, const char* axis) {
 }
 
 double cells_along(double length_m, double radius_m) {
-    return std::max(1.0, std::ceil(length_m / (longest_radii * radius_m)));
+    return std::max(1.0, std::ceil(length_m / (longest_cell_radii * radius_m)));
 }
 
 VolumeGrid grid_over(const PlaneOfMotion& frame, const Bounds& extent, double lateral_low_m, double lateral_high_m,
@@ -51,7 +48,7 @@ VolumeGrid grid_over(const PlaneOfMotion& frame, const Bounds& extent, double la
                     {},
                     {},
                     {}};
-    if (!VolumeMap::fits(extent, lateral_low_m, lateral_high_m, radius_m)) {
+    if (!has_few_bricks(extent, lateral_low_m, lateral_high_m, radius_m)) {
         throw_input_error("the volume has more than 2^26 bricks of 1.8 rotor radii; choose a smaller one");
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -101,13 +98,13 @@ void adopt(VolumeNode& node, const VolumeNode& theirs, OwnedBrick& brick) {
 
 }  // namespace
 
-bool VolumeMap::fits(const Bounds& extent, double lateral_low_m, double lateral_high_m, double radius_m) {
+bool has_few_bricks(const Bounds& extent, double lateral_low_m, double lateral_high_m, double radius_m) {
     double bricks = 1;
     for (const double length_m :
          {extent.x_high_m - extent.x_low_m, lateral_high_m - lateral_low_m, extent.z_high_m - extent.z_low_m}) {
         bricks *= std::ceil(cells_along(length_m, radius_m) / VolumeBrick::side_cells);
     }
-    return bricks <= static_cast<double>(max_bricks);
+    return bricks <= static_cast<double>(max_volume_bricks);
 }
 
 SidedFactor<double> direct_value(const DirectEffect& effect, const Vector3& hub_m) {

@@ -66,6 +66,15 @@ struct VolumeGrid {
     [[nodiscard]] std::size_t brick_count() const noexcept { return std::size_t{bricks[0]} * bricks[1] * bricks[2]; }
 };
 
+/// A volume has no more bricks than this: half a gigabyte of addresses, of which only those become memory that are near
+/// a place asked for.
+inline constexpr std::size_t max_volume_bricks = std::size_t{1} << 26U;
+/// A cell's edge is no longer than this times R: no obstacle is missed.
+inline constexpr double longest_cell_radii = 0.45;
+
+/// Whether a block has no more bricks than a volume may have.
+[[nodiscard]] bool has_few_bricks(const Bounds& extent, double lateral_low_m, double lateral_high_m, double radius_m);
+
 /// What a volume interpolates, evaluated directly; see direct_value().
 [[nodiscard]] SidedFactor<double> direct_value(const DirectEffect& effect, const Vector3& hub_m);
 

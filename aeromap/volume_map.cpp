@@ -19,6 +19,15 @@ std::optional<VolumeBox> box_at(const VolumeView& view, const Vector3& hub_m) {
 
 }  // namespace
 
+bool VolumeMap::fits(const Bounds& extent, double lateral_low_m, double lateral_high_m, double radius_m) {
+    return has_few_bricks(extent, lateral_low_m, lateral_high_m, radius_m);
+}
+
+double VolumeMap::largest_m3(double radius_m) {
+    const double edge_m = VolumeBrick::side_cells * longest_cell_radii * radius_m;
+    return static_cast<double>(max_volume_bricks) * edge_m * edge_m * edge_m;
+}
+
 VolumeMap::VolumeMap(std::shared_ptr<const DirectEffect> effect, const PlaneOfMotion& frame, const Bounds& extent,
                      double lateral_low_m, double lateral_high_m)
     : bricks_(std::make_shared<VolumeBricks>(std::move(effect), frame, extent, lateral_low_m, lateral_high_m)),

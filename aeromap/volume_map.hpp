@@ -29,13 +29,9 @@ namespace downwash {
 /// jumps are evaluated directly. Safe to share between threads.
 class DOWNWASH_EXPORT VolumeMap {
  public:
-    /// A map's bricks need half a gigabyte of addresses at most, of which only those become memory that are near a
-    /// place asked for.
-    static constexpr std::size_t max_bricks = std::size_t{1} << 26U;
-    /// The volume of the largest map, in cubes with edges of R.
-    static constexpr double largest_radii3 = max_bricks * 1.8 * 1.8 * 1.8;
-    /// Whether a block is small enough for a map.
+    /// Whether a block is small enough for a map, and the volume of the largest one [m3].
     [[nodiscard]] static bool fits(const Bounds& extent, double lateral_low_m, double lateral_high_m, double radius_m);
+    [[nodiscard]] static double largest_m3(double radius_m);
 
     /// Fills nothing, and looks at nothing in the scene.
     /// @param frame x and z are those of its plane; the block reaches from `lateral_low_m` to `lateral_high_m` to its

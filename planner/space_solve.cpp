@@ -87,7 +87,7 @@ std::vector<KeyError> space_planning_errors(const SpaceProblem& problem) {
     const HubSpace hubs = hub_space(problem);
     const double radius_m = problem.robot.rotor_radius_m;
     if (makes_volumes(problem) && !VolumeMap::fits(hubs.extent, hubs.y_low_m, hubs.y_high_m, radius_m)) {
-        const auto volume_m3 = static_cast<std::int64_t>(VolumeMap::largest_radii3 * radius_m * radius_m * radius_m);
+        const auto volume_m3 = static_cast<std::int64_t>(VolumeMap::largest_m3(radius_m));
         errors.push_back({"environment.bounds", "are too large for maps of surface effects on rotors of " +
                                                     to_text(radius_m, 4) + " m: expected at most some " +
                                                     std::to_string(volume_m3) + " m3"});
