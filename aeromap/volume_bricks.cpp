@@ -61,6 +61,16 @@ VolumeGrid grid_over(const PlaneOfMotion& frame, const Bounds& extent, double la
     return grid;
 }
 
+/// Null pointers, which become memory page by page where they are written to: no container does that.
+VolumeBrick** null_places(std::size_t count) {
+    // NOLINTNEXTLINE(cppcoreguidelines-no-malloc)
+    void* const places = std::calloc(count, sizeof(void*));
+    if (places == nullptr) {
+        throw std::bad_alloc();
+    }
+    return static_cast<VolumeBrick**>(places);
+}
+
 /// Nothing near anywhere: the flyable area's end is at least R away.
 std::unique_ptr<VolumeBrick> calm_brick(double radius_m) {
     auto brick = std::make_unique<VolumeBrick>();
@@ -120,11 +130,7 @@ VolumeBricks::VolumeBricks(std::shared_ptr<const DirectEffect> effect, const Pla
     : effect_(std::move(effect)),
       grid_(grid_over(frame, extent, lateral_low_m, lateral_high_m, effect_->rotor_radius_m())),
       calm_(calm_brick(effect_->rotor_radius_m())),
-      places_(static_cast<VolumeBrick**>(std::calloc(grid_.brick_count(), sizeof(VolumeBrick*)))) {
-    if (places_ == nullptr) {
-        throw std::bad_alloc();
-    }
-}
+      places_(null_places(grid_.brick_count())) {}
 
 VolumeView VolumeBricks::view() noexcept {
     VolumeView view{};
@@ -281,7 +287,7 @@ std::size_t VolumeBricks::memory_bytes() const {
     constexpr std::size_t page_bytes = 4096;
     std::vector<std::size_t> pages = made();  // those of the places that were written to
     for (std::size_t& number : pages) {
-        number /= page_bytes / sizeof(VolumeBrick*);
+        number /= page_bytes / sizeof(void*);
     }
     pages.erase(std::unique(pages.begin(), pages.end()), pages.end());
     std::size_t bytes = sizeof(*this) + sizeof(VolumeBrick) + pages.size() * page_bytes;

@@ -134,7 +134,9 @@ class VolumeBricks {
     void for_each_owned(const Each& each) const;
 
     struct Free {
-        void operator()(VolumeBrick** places) const noexcept { std::free(static_cast<void*>(places)); }
+        void operator()(VolumeBrick** places) const noexcept {
+            std::free(static_cast<void*>(places));  // NOLINT(cppcoreguidelines-no-malloc): of calloc
+        }
     };
 
     std::shared_ptr<const DirectEffect> effect_;
