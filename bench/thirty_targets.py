@@ -6,6 +6,7 @@ Limits are iterations, so that the load of the machine does not matter. bench/th
 """
 
 import argparse
+import math
 import pathlib
 import statistics
 import tempfile
@@ -42,7 +43,7 @@ def main():
     first = [searched(given.program, seed, *limit, "--stop-at-first") for seed in seeds]
     whole = [searched(given.program, seed, *limit) for seed in seeds]
     best = min(cost for cost, _ in whole if cost is not None)
-    ratios = [cost / best for cost, _ in first if cost is not None]
+    ratios = [math.inf if cost is None else cost / best for cost, _ in first]
 
     print(f"[{PROBLEM.name}](../../problems/space/{PROBLEM.name}): thirty gussets of a girder bay, each from its own direction, and "
           "the way back. Costs are energies\nof executed flights, hovers at the targets included, in the nominal world, without "
@@ -53,9 +54,10 @@ def main():
         print(f"| {seed} | {shown(at_first, best)} | {shown(at_last, best)} | {'the same' if order == later else 'two'} |")
     print(f"\n{len(set(order for _, order in first + whole))} different orders in {2 * given.seeds} searches.\n")
     print("## Bounds\n\n| bound | found | |\n| --- | --- | --- |")
-    median = statistics.median(ratios) if len(ratios) == given.seeds else float("inf")
+    median = statistics.median(ratios)
     print_bound(f"the first answer to thirty targets costs at most {ALLOWED} of the best of {given.seeds} long searches",
-                f"median {median:.3f}, {min(ratios):.3f} to {max(ratios):.3f}", median <= ALLOWED)
+                f"median {median:.3f}, least {min(ratios):.3f}; {sum(map(math.isfinite, ratios))} of {given.seeds} have one",
+                median <= ALLOWED)
 
 
 if __name__ == "__main__":
