@@ -55,7 +55,7 @@ def tracked(problem, seed, runs, work):
     command = [ROOT / "build/bench/bench_track_paths", problem, "--seed", str(seed)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        return {"share": None, "free_share": None, "duration_s": None, "why": "no path within its time"}
+        return {"share": None, "free_share": None, "duration_s": None, "why": done.stderr.strip().splitlines()[-1]}
     plan = work / "path.json"
     plan.write_text(done.stdout, encoding="utf-8")
     return flown(problem, plan, runs, work)

@@ -79,7 +79,8 @@ SpaceConfiguration read(const ob::State* state, int joints) {
 void write(const SpaceConfiguration& at, int joints, ob::State* state) {
     double* real = state->as<ob::CompoundState>()->as<Real>(0)->values;
     std::copy_n(at.begin(), 3, real);
-    state->as<ob::CompoundState>()->as<Angle>(1)->value = std::remainder(at[space::yaw], 2 * std::numbers::pi);
+    const double yaw = std::remainder(at[space::yaw], 2 * std::numbers::pi);
+    state->as<ob::CompoundState>()->as<Angle>(1)->value = yaw < std::numbers::pi ? yaw : -yaw;  // pi is out of bounds
     std::copy_n(at.begin() + space::first_joint, joints, real + 3);
 }
 
@@ -170,10 +171,11 @@ void plan(const Options& options) {
     planner.setProblemDefinition(definition);
     planner.setup();
     const double begin_s = bench::processor_time_s();
-    planner.solve(
+    const ob::PlannerStatus status = planner.solve(
         ob::PlannerTerminationCondition([&] { return bench::processor_time_s() - begin_s > options.time_limit_s; }));
     if (!definition->hasExactSolution()) {
-        throw std::runtime_error("no path");
+        throw std::runtime_error(
+            fmt::format("no path after {:.1f} s: {}", bench::processor_time_s() - begin_s, status.asString()));
     }
     auto& path = *definition->getSolutionPath()->as<og::PathGeometric>();
     og::PathSimplifier(information).simplifyMax(path);
