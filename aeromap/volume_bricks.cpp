@@ -158,12 +158,12 @@ void VolumeBricks::put(std::size_t number, std::unique_ptr<OwnedBrick> brick) {
     const std::scoped_lock lock(mutex_);
     if (places_[number] == nullptr) {
         made_.push_back(number);
-        VolumeBrick* put = calm_.get();
+        VolumeBrick* one = calm_.get();
         if (brick != nullptr) {
-            put = brick.get();
+            one = brick.get();
             owned_.push_back(std::move(brick));
         }
-        __atomic_store_n(&places_[number], put, __ATOMIC_RELEASE);
+        __atomic_store_n(&places_[number], one, __ATOMIC_RELEASE);
     }
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Flies dynobench's problems of its two quadrotors, runs OMPL's RRT, SST and KPIECE on them and on the girder bay, and writes
 # bench/results/dynobench_space.md. SEEDS (of first solutions and searches of 1 s), LONG_SEEDS (of 10 s) and OMPL_LIMIT change how
-# many searches there are, and the CPU time of OMPL's: with SEEDS=50 LONG_SEEDS=10 OMPL_LIMIT=60, an hour and a half of one core.
+# many searches there are, and the CPU time of OMPL's: with SEEDS=50 LONG_SEEDS=10 OMPL_LIMIT=60, an hour and a quarter of one core.
 set -euo pipefail
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -43,17 +43,12 @@ bool certifies(const SpaceProblem& problem) {
     return problem.uncertainty && problem.planner.certify;
 }
 
-/// Whether there are flights through maps of surface effects.
-bool makes_volumes(const SpaceProblem& problem) {
-    return problem.aero.enabled && (problem.planner.variant == Variant::mp_arm_ada || has_surface_effects(problem));
-}
-
 /// Whether flights of a search, of its certificates or of stops are among surfaces.
-bool needs_volumes(const SpaceProblem& problem, const SpaceSolveOptions& options) {
+bool needs_volumes(const SpaceProblem& problem, bool finds_stops) {
     if (problem.planner.variant == Variant::mp_arm_ada) {
         return problem.aero.enabled;
     }
-    return has_surface_effects(problem) && (certifies(problem) || options.finds_stops);
+    return has_surface_effects(problem) && (certifies(problem) || finds_stops);
 }
 
 }  // namespace
@@ -86,7 +81,7 @@ std::vector<KeyError> space_planning_errors(const SpaceProblem& problem) {
     }
     const HubSpace hubs = hub_space(problem);
     const double radius_m = problem.robot.rotor_radius_m;
-    if (makes_volumes(problem) && !VolumeMap::fits(hubs.extent, hubs.y_low_m, hubs.y_high_m, radius_m)) {
+    if (needs_volumes(problem, true) && !VolumeMap::fits(hubs.extent, hubs.y_low_m, hubs.y_high_m, radius_m)) {
         const auto volume_m3 = static_cast<std::int64_t>(VolumeMap::largest_m3(radius_m));
         errors.push_back({"environment.bounds", "are too large for maps of surface effects on rotors of " +
                                                     to_text(radius_m, 4) + " m: expected at most some " +
@@ -104,7 +99,7 @@ SpaceSearchResult solve(const std::shared_ptr<const SpaceProblemModel>& model, c
     result.seed = problem.planner.seed;
     const planning::Stopwatch map_clock;
     std::shared_ptr<const SurfaceVolumes> volumes;
-    if (needs_volumes(problem, options)) {
+    if (needs_volumes(problem, options.finds_stops)) {
         volumes = options.map ? options.map : make_volumes(*model, options.map_cache);
     }
     result.planning.map_wall_s = volumes ? map_clock.seconds() : 0;

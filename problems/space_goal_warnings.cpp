@@ -89,12 +89,13 @@ class GoalCheck {
         std::ranges::copy_if(problem_.obstacles, std::back_inserter(named),
                              [&](const Obstacle& obstacle) { return obstacle.name == contact->obstacle; });
         const Scene alone(std::move(named));
-        constexpr int places = 20;
+        constexpr int tries = 20;
         const SpaceGoalSampler sampler(problem_.robot, problem_.bounds, scene_, checker_,
                                        problem_.planner.safety_margin_m, goal);
         Random random(3);
         std::string lack;
-        for (int i = 0; i < places; ++i) {
+        int places = 0;
+        for (int i = 0; i < tries; ++i) {
             const auto place = sampler.sample(random, 0).place;
             if (!place) {
                 continue;
@@ -108,11 +109,12 @@ class GoalCheck {
             if (lack.empty()) {
                 return std::nullopt;
             }
+            ++places;
         }
-        return lack.empty() ? std::nullopt
-                            : std::optional(SpaceGoalObjection{
-                                  "force_n", lack + ", at each of " + std::to_string(places) +
-                                                 " places that were tried; press less, or give the robot more"});
+        return places == 0 ? std::nullopt
+                           : std::optional(SpaceGoalObjection{
+                                 "force_n", lack + ", at each of " + std::to_string(places) +
+                                                " places that were tried; press less, or give the robot more"});
     }
 
     /// That no way leads from the start to any of some free configurations of a goal.
