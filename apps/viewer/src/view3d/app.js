@@ -6,9 +6,9 @@ import {opening_of} from "../extents.js";
 import {number} from "../format.js";
 import {pose_at} from "../model.js";
 import {are_many, goal_region, is_cut} from "../surroundings.js";
-import {make_camera, planar_view} from "./camera.js";
-import {lights, make_canvas, palettes} from "./look.js";
-import {make_names, names_of} from "./names.js";
+import {planar_view} from "./camera.js";
+import {names_of} from "./names.js";
+import {make_picture} from "./picture.js";
 import {draw_grid, draw_sheet, grid_around} from "./plane.js";
 import {draw_line, draw_solid, draw_together, draw_tube, draw_vehicle} from "./solids.js";
 
@@ -79,18 +79,14 @@ function draw_paths(world, {data}, size_m, paint) {
 /** @param {HTMLElement} stage */
 export function start(stage, model, clock) {
     const {data, scene, robot} = model;
-    const painted = [];
-    const paint = (material, name) => painted.push([material, name]);
-    const renderer = new three.WebGLRenderer({antialias: true});
-    renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
-    const canvas = make_canvas(renderer);
+    const picture = make_picture();
+    const {world, paint, render} = picture;
     const grid = grid_around(data ? opening_of(model) : scene.bounds);
     const ends = (list) => [list[0], list[list.length - 1]];
     const extent = {x_m: ends(grid.x_m), z_m: ends(grid.z_m)};
     const size_m = Math.max(extent.x_m[1] - extent.x_m[0], extent.z_m[1] - extent.z_m[0]);
 
-    const world = new three.Scene();
-    world.add(...lights(), draw_grid(grid, paint));
+    world.add(draw_grid(grid, paint));
     const sheet = model.map ? draw_sheet(model.map, grid) : null;
     if (sheet) {
         world.add(sheet.sheet);
@@ -105,35 +101,14 @@ export function start(stage, model, clock) {
         draw_paths(world, model, size_m, paint);
     }
 
-    let is_waiting = false, names = null, view = null;
-    const render = () => {
-        if (!is_waiting) {
-            is_waiting = true;
-            requestAnimationFrame(() => {
-                is_waiting = false;
-                renderer.render(world, view.camera);
-                names.draw(view.camera, stage.clientWidth, stage.clientHeight);
-            });
-        }
-    };
     const {radius_m, positions_m} = robot.rotors;
     const width_m = 2 * (radius_m + Math.max(...positions_m.map(([, y]) => Math.abs(y))));
-    view = make_camera(canvas, planar_view(extent, width_m, scene.obstacles), render);
-    names = make_names(names_of(model, grid, extent), vehicle.covered, bodies);
-    stage.replaceChildren(canvas, names.element);
-
-    let is_framed = false;
+    const view = picture.frame(
+        stage, planar_view(extent, width_m, scene.obstacles), names_of(model, grid, extent), vehicle.covered, bodies);
     new ResizeObserver(() => {
         const width = stage.clientWidth, height = stage.clientHeight;
         if (width > 0 && height > 0) {
-            renderer.setSize(width, height, false);
-            view.camera.aspect = width / height;
-            view.camera.updateProjectionMatrix();
-            if (!is_framed) {
-                is_framed = true;
-                view.home();
-            }
-            render();
+            picture.controls.resize(width, height, false);
         }
     }).observe(stage);
 
@@ -155,16 +130,13 @@ export function start(stage, model, clock) {
         render();
     });
     return {
+        ...picture.controls,
         follow,
-        home: view.home,
-        zoom_by: view.zoom_by,
         note: `The grid lies in the plane of motion; its squares are ${number(grid.step_m, "~r")}\u00a0m wide. ` +
             "Obstacles that the plane cuts are darker than those beside it.",
         set_theme(theme) {
-            world.background = new three.Color(palettes[theme].paper);
-            painted.forEach(([material, name]) => material.color.set(palettes[theme][name]));
             sheet?.set_theme(theme);
-            render();
+            picture.controls.set_theme(theme);
         },
         /** Where the end effector is drawn, for tests. */
         tip() {

@@ -47,12 +47,13 @@ export function make_picture(label) {
         /**
          * Puts the picture into its place in the page.
          * @param {object} framing of make_camera()   @param {object[]} texts of make_names()
+         * @param {[() => any[], Map<object, three.Object3D>?]} hiding what hides names, as of make_names()
          * @returns the view of make_camera()
          */
-        frame(into, framing, texts, covered) {
+        frame(into, framing, texts, ...hiding) {
             stage = into;
             view = make_camera(canvas, framing, render);
-            names = make_names(texts, covered);
+            names = make_names(texts, ...hiding);
             stage.replaceChildren(canvas, names.element);
             return view;
         },
