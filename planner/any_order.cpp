@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "downwash/planner/direct_flight.hpp"
@@ -17,12 +18,9 @@
 namespace downwash::planning {
 namespace {
 
-/// What each leg of the first flight gets at least where iterations are limited: of fewer nobody learns whether there
-/// is a way. In the plane every share counts, however small.
+/// Whether ways around obstacles are known before anything is flown.
 template <class Family>
-constexpr std::uint64_t min_iterations_of_leg = 0;
-template <>
-constexpr std::uint64_t min_iterations_of_leg<Space> = 24;
+constexpr bool knows_ways = std::is_same_v<Family, Space>;
 
 template <class Family>
 class AnyOrder {
@@ -34,6 +32,7 @@ class AnyOrder {
     using FoundPlan = FoundPlanOf<Family>;
     using Found = FoundOf<Family>;
     using SearchResult = SearchResultOf<Family>;
+    using SequenceEffort = SequenceEffortOf<Family>;
 
     AnyOrder(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
         : problem_(problem),
@@ -65,12 +64,13 @@ class AnyOrder {
 
     [[nodiscard]] bool is_done() const { return is_over() || (options_.stop_at_first_solution && has_way()); }
     void search();
+    [[nodiscard]] bool is_settled(const PlaceOrder& order) const;
     [[nodiscard]] bool has_energy_to_spare(const PlaceOrder& order) const;
     [[nodiscard]] bool leaves_energy(const PlaceOrder& order);
     [[nodiscard]] bool finds_more_places();
     [[nodiscard]] SearchBudget budget_of_try() const;
     [[nodiscard]] SearchBudget share_of_left(double share) const;
-    [[nodiscard]] SequenceEffort effort() const;
+    [[nodiscard]] SequenceEffort effort(const PlaceOrder& order) const;
     void compare_orders(const SearchBudget& budget);
     void tell_of_legs();
     [[nodiscard]] VisitOrder described(const PlaceOrder& order) const;
@@ -125,9 +125,13 @@ template <class Family>
 void AnyOrder<Family>::search() {
     constexpr double share_of_first = 0.15, share_of_legs = 0.35, share_before_a_way = 0.15;
     const PlaceOrder likely = comparison_.likely();
-    is_thrifty_ = is_limited() && !(is_timed() && has_energy_to_spare(likely));
-    if (!is_thrifty_ && is_order(likely)) {
-        const std::uint64_t least = min_iterations_of_leg<Family> * (likely.places.size() + 1);
+    is_thrifty_ = is_limited() && !((is_timed() || knows_ways<Family>)&&has_energy_to_spare(likely));
+    if (!is_thrifty_ && is_settled(likely)) {
+        if (attempt(likely, left_, options_.stop_at_first_solution)) {
+            return;
+        }
+    } else if (!is_thrifty_ && is_order(likely)) {
+        const std::uint64_t least = min_iterations_of_part<Family> * (likely.places.size() + 1);
         const SearchBudget first = left_.part(share_of_first).at_least_iterations(least).at_most(left_);
         static_cast<void>(attempt(likely, is_timed() ? left_ : first, true));
     }
@@ -171,6 +175,13 @@ void AnyOrder<Family>::search() {
     }
 }
 
+/// Whether short flights along legs would not change an order: through many targets, of which none can be proven best,
+/// known ways tell more than luck.
+template <class Family>
+bool AnyOrder<Family>::is_settled(const PlaceOrder& order) const {
+    return knows_ways<Family> && !order.is_best && order.places.size() == targets_of(problem_).size();
+}
+
 /// Where time alone is limited and legs were searched for in vain: searches for them again, for longer. @return whether
 /// there were any
 template <class Family>
@@ -199,17 +210,19 @@ SearchBudget AnyOrder<Family>::budget_of_try() const {
 }
 
 template <class Family>
-SequenceEffort AnyOrder<Family>::effort() const {
+auto AnyOrder<Family>::effort(const PlaceOrder& order) const -> SequenceEffort {
     constexpr double patience = 0.25, patience_with_energy = 0.1;  // there, fewer targets may be the answer
     constexpr double min_round = 0.22;                             // two rounds then, of 22 and 78 %
     SequenceEffort effort;
     effort.has_energy_to_spare = !is_thrifty_;
     effort.ends_with_first_plan = options_.stop_at_first_solution;
+    for (std::size_t i = 0; knows_ways<Family> && i < order.places.size() + (problem_.return_to ? 1 : 0); ++i) {
+        effort.expected.push_back(table_.expected(place_of(order, i), place_of(order, i + 1)));
+    }
     if (has_way()) {
         effort.min_round = min_round;  // short rounds are for a first flight, and there is one
-    } else if (is_timed()) {
-        const SearchBudget all(problem_.planner);
-        effort.patience_s = all.part(is_thrifty_ ? patience_with_energy : patience).time_s();
+    } else if (is_timed() || knows_ways<Family>) {
+        effort.patience = SearchBudget(problem_.planner).part(is_thrifty_ ? patience_with_energy : patience);
     }
     return effort;
 }
@@ -292,7 +305,7 @@ bool AnyOrder<Family>::attempt(const PlaceOrder& order, const SearchBudget& budg
     const double begun_at_s = clock_.seconds();
     const std::uint64_t iterations = record_.iterations;
     const SolveOptions options = options_of_attempt(is_first_only, order);
-    SearchResult result = search_in_order(part, model_, options, effort(), attempts_);
+    SearchResult result = search_in_order(part, model_, options, effort(order), attempts_);
     attempts_ = result.attempts;
     Found& found = result.found;
     if (found.status == Status::solved && is_limited() && !found.execution) {
@@ -371,7 +384,7 @@ void AnyOrder<Family>::learn_from_failure(const PlaceOrder& order, const SearchR
         comparison_.energy_limit_j = less * std::min(comparison_.energy_limit_j, order.energy_j);
         return;
     }
-    if (is_timed() && !has_way()) {
+    if (!has_way() && (is_timed() || result.hard_goal)) {
         if (result.hard_goal) {
             // First a flight to the others, then more of this one.
             give_up_leg(order, *result.hard_goal + 1);
@@ -443,7 +456,7 @@ void AnyOrder<Family>::explain() {
             continue;
         }
         LeftOutTarget left_out{target, LeftOutReason::no_flight, std::nullopt};
-        const double energy_j = energy_with(table_.estimates(), best_order_.places, target);
+        const double energy_j = energy_with(table_.at_least(), best_order_.places, target);
         // Where there is no flight at all, it is not for its energy that one to a cheap target is missing.
         const bool is_for_energy = has_way() || energy_j > problem_.energy_budget_j.value_or(energy_j);
         if (is_limited() && std::isfinite(energy_j) && is_for_energy && !table_.is_out_of_reach(target)) {

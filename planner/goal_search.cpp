@@ -139,7 +139,8 @@ SearchResultOf<Family> search_tree(CandidateCheckOf<Family>& check, const SolveO
                       }});
     search.set_max_iterations(settings.max_iterations);
     search.set_stops_at_first_plan(options.stop_at_first_solution);
-    search.set_known(options.known_plan, options.known_places);
+    search.set_enough_cost(options.enough_cost);
+    search.set_known(options.known_plan, options.known_places, options.known_way);
     search.set_observer([&] {
         check.clock().note(search.iterations(), search.growth().tree().size(), search.statistics().rejections);
     });

@@ -20,6 +20,18 @@ void add_trees(std::vector<TreeNode>& sum, const std::vector<TreeNode>& part) {
     }
 }
 
+/// The configurations at the knots of a plan after the first; in the plane nobody asks for them.
+std::vector<Configuration> corners_of(const Plan& /*plan*/) {
+    return {};
+}
+std::vector<SpaceConfiguration> corners_of(const SpacePlan& plan) {
+    std::vector<SpaceConfiguration> corners;
+    for (std::size_t i = 1; i < plan.reference.size(); ++i) {
+        corners.push_back(configuration_of(plan.reference[i].point));
+    }
+    return corners;
+}
+
 }  // namespace
 
 template <class Family>
@@ -32,7 +44,8 @@ GoalSequenceOf<Family>::GoalSequenceOf(const Problem& problem, const PlannerMode
       goals_(goals_of(problem)),
       searches_(goals_.size()),
       given_up_(goals_.size()),
-      vain_s_(goals_.size()),
+      vain_(goals_.size()),
+      left_ways_(goals_.size()),
       whole_(problem.planner),
       left_(whole_),
       part_budget_(whole_),
@@ -41,7 +54,7 @@ GoalSequenceOf<Family>::GoalSequenceOf(const Problem& problem, const PlannerMode
 
 template <class Family>
 auto GoalSequenceOf<Family>::new_round(const SearchBudget& budget) const -> Round {
-    return {budget, {Course::from_start(problem_, *model_.flight)}, {}, {}};
+    return {budget, {Course::from_start(problem_, *model_.flight)}, {}, {}, {}};
 }
 
 template <class Family>
@@ -53,6 +66,7 @@ auto GoalSequenceOf<Family>::next() -> std::optional<Part> {
     Course& course = round_.courses.back();
     course.attempts = attempts_;
     Part part{part_of(problem_, goals_[number], course.plan), &course, options_of_part(), 0};
+    use_what_is_known(number, part.options);
     part.problem.planner.seed += searches_[number]++;
     part_budget_ = has_way() ? round_.left.part(share(number)) : budget_of(number).at_most(round_.left);
     part_budget_.limit(part.problem.planner);
@@ -114,7 +128,7 @@ bool GoalSequenceOf<Family>::give_up(bool came_nearer) {
         return false;
     }
     const std::size_t part = round_.part_costs.size();
-    if (vain_s_[part] >= effort_.patience_s) {
+    if (effort_.patience && effort_.patience->share_of(vain_[part]) >= 1) {
         hard_goal_ = part;
         return false;
     }
@@ -131,7 +145,11 @@ auto GoalSequenceOf<Family>::budget_of(std::size_t part) const -> SearchBudget {
     // Where energy is limited it is not the first plan of a part that counts, but a cheap one.
     const double first_share = (is_thrifty() ? 0.6 : 0.25) / static_cast<double>(goals_.size());
     const int doublings = static_cast<int>(std::min(given_up_[part], 30U));
-    return whole_.part(first_share).within_s(longest_first_s).part(std::ldexp(1.0, doublings)).at_most(whole_);
+    return whole_.part(first_share)
+        .at_least_iterations(min_iterations_of_part<Family>)
+        .within_s(longest_first_s)
+        .part(std::ldexp(1.0, doublings))
+        .at_most(whole_);
 }
 
 /// Goes back to search the way to some goal anew. False if there is no time for it.
@@ -139,7 +157,11 @@ template <class Family>
 bool GoalSequenceOf<Family>::go_back(std::size_t part) {
     keep_if_farther();
     round_.courses.resize(part + 1);
+    for (std::size_t i = part + 1; i < round_.part_ways.size(); ++i) {
+        left_ways_[i] = std::move(round_.part_ways[i]);
+    }
     round_.part_costs.resize(part);
+    round_.part_ways.resize(part);
     round_.way.plan = part > 0 ? std::optional(round_.courses.back().plan) : std::nullopt;
     round_.way.cost = round_.courses.back().cost;
     round_.way.certificate.reset();
@@ -158,7 +180,8 @@ bool GoalSequenceOf<Family>::goes_on_after(SearchResult part) {
     if (found.status != Status::solved && !part.weak_goal) {
         part_budget_.charge(spent);
         // The check of a plan may take much longer than the search for it, and tells that there is a way.
-        vain_s_[number] += std::min(spent.wall_s, part_budget_.time_s());
+        vain_[number].wall_s += std::min(spent.wall_s, part_budget_.time_s());
+        vain_[number].iterations += spent.iterations;
     }
     round_.left.spend(spent);
     left_.spend(spent);
@@ -197,6 +220,7 @@ bool GoalSequenceOf<Family>::goes_on_after(SearchResult part) {
         return give_up(true);
     }
     round_.part_costs.push_back(found.cost);
+    round_.part_ways.push_back(corners_of(*found.plan));
     if (is_last) {
         way.status = Status::solved;
         way.execution = std::move(found.execution);
@@ -208,6 +232,30 @@ bool GoalSequenceOf<Family>::goes_on_after(SearchResult part) {
         advanced(course, goals_[number], *found.plan, found.cost, model_, problem_.planner.variant));
     way.plan = round_.courses.back().plan;
     return true;
+}
+
+/// A search for a goal grows along the part of the best way so far. Before there is one, it grows along the part that
+/// was left to go back, the first one along the way that is expected; and a first plan is good enough if it costs not
+/// much more than that.
+template <class Family>
+void GoalSequenceOf<Family>::use_what_is_known(std::size_t goal, SolveOptions& options) {
+    if (has_way()) {
+        options.known_way = part_ways_[goal];
+        return;
+    }
+    options.known_way = std::exchange(left_ways_[goal], {});
+    if (goal >= effort_.expected.size() || problem_.planner.algorithm != "rrt-star") {
+        return;
+    }
+    const ExpectedLegOf<Family>& expected = effort_.expected[goal];
+    if (searches_[goal] == 0) {
+        options.known_way = expected.corners;
+    }
+    if (options.stop_at_first_solution && std::isfinite(expected.cost.cost)) {
+        constexpr double much_more = 1.25;
+        options.stop_at_first_solution = false;
+        options.enough_cost = much_more * expected.cost.cost;
+    }
 }
 
 /// Options under which a part reports its progress as that of the whole.
@@ -319,6 +367,7 @@ void GoalSequenceOf<Family>::keep(Round round) {
         gains_[i] = std::max(0.0, part_costs_[i] - round.part_costs[i]);
     }
     part_costs_ = std::move(round.part_costs);
+    part_ways_ = std::move(round.part_ways);
     best_ = std::move(round.way);
     if (has_way()) {
         best_.missed_goal.reset();

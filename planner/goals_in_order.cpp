@@ -18,7 +18,7 @@ namespace {
 template <class Family>
 SearchResultOf<Family> search_in_turn(const typename Family::Problem& problem, const PlannerModelOf<Family>& model,
                                       PlanChecksOf<Family> checks, const SolveOptionsOf<Family>& options,
-                                      const SequenceEffort& effort, std::uint64_t attempts) {
+                                      const SequenceEffortOf<Family>& effort, std::uint64_t attempts) {
     GoalSequenceOf<Family> sequence(problem, model, options, effort, attempts);
     while (const auto part = sequence.next()) {
         checks.time_s = part->check_time_s;
@@ -64,7 +64,7 @@ SearchResult search_in_order(const Problem& problem, const PlannerModel& model, 
 }
 
 SearchResultOf<Space> search_in_order(const SpaceProblem& problem, const PlannerModelOf<Space>& model,
-                                      const SolveOptionsOf<Space>& options, const SequenceEffort& effort,
+                                      const SolveOptionsOf<Space>& options, const SequenceEffortOf<Space>& effort,
                                       std::uint64_t attempts) {
     std::optional<SpaceProblemWorlds> worlds;
     if (problem.uncertainty) {

@@ -21,7 +21,8 @@ namespace downwash::planning {
 /// The same in space. @param problem whose goals come in their order
 [[nodiscard]] SearchResultOf<Space> search_in_order(const SpaceProblem& problem, const PlannerModelOf<Space>& model,
                                                     const SolveOptionsOf<Space>& options,
-                                                    const SequenceEffort& effort = {}, std::uint64_t attempts = 0);
+                                                    const SequenceEffortOf<Space>& effort = {},
+                                                    std::uint64_t attempts = 0);
 
 /// Whether an end was asked for, for the last flight of a plan that was not flown yet. A stop that came before leaves
 /// it a moment, which is plenty in most scenes: whoever interrupts wants to know what the plan is worth.

@@ -7,7 +7,6 @@
 
 #include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goal_search.hpp"
-#include "downwash/search/free_air_cost.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -46,62 +45,26 @@ std::vector<std::size_t> targets_of_places(const AnyProblem& problem) {
 
 }  // namespace
 
-/// Lower bounds of the cost and the energy of the way to a goal.
-template <class Family>
-class LegTableOf<Family>::Bounds {
- public:
-    using FlightModel = typename Family::FlightModel;
-
-    Bounds(const Problem& problem, const Goal& goal, const FlightModel& model)
-        : Bounds(without_obstacles(part_of(problem, goal, {})), model) {}
-
-    [[nodiscard]] LegCost from(const Configuration& at) const {
-        return {cost_.min_cost_to_goal(at), energy_.min_cost_to_goal(at)};
-    }
-    /// A configuration that meets the goal; it may be in collision.
-    [[nodiscard]] Configuration within_goal(const Configuration& near) const {
-        return task_.space.moved_into_goal(near, 0);
-    }
-
- private:
-    Bounds(Problem problem, const FlightModel& model)
-        : problem_(std::move(problem)),
-          energy_problem_(for_energy(problem_)),
-          task_(problem_, model, nullptr),
-          energy_task_(energy_problem_, model, nullptr),
-          cost_(task_),
-          energy_(energy_task_) {}
-
-    static Problem for_energy(Problem problem) {
-        problem.planner.objective = Objective::energy;
-        return problem;
-    }
-    /// The model has them.
-    static Problem without_obstacles(Problem problem) {
-        problem.obstacles.clear();
-        return problem;
-    }
-
-    Problem problem_, energy_problem_;
-    SearchTaskOf<Family> task_, energy_task_;
-    FreeAirCostOf<Family> cost_, energy_;
-};
-
 template <class Family>
 LegTableOf<Family>::LegTableOf(const Problem& problem, const PlannerModel& model, const SolveOptions& options)
     : problem_(problem),
       model_(model),
       options_(options),
       start_(Course::from_start(problem, *model.flight)),
-      estimates_(targets_of_places(problem)) {
+      estimates_(targets_of_places(problem)),
+      at_least_(estimates_) {
     const Configuration start = place_of(problem.start);
     for (auto& [visit, goal] : goals_at_places(problem)) {
-        bounds_.push_back(std::make_unique<Bounds>(problem, goal, *model.flight));
-        places_.push_back({visit, std::move(goal), bounds_.back()->within_goal(start), std::nullopt});
+        bounds_.push_back(std::make_unique<LegBoundsOf<Family>>(problem, goal, *model.flight));
+        // In the goal region; it may be in collision.
+        Configuration at = bounds_.back()->space().moved_into_goal(start, 0);
+        places_.push_back({visit, std::move(goal), std::move(at), std::nullopt});
     }
     const std::size_t outside = estimates_.outside();
     legs_.resize((outside + 1) * (outside + 1));
     estimates_.energy_budget_j = problem.energy_budget_j.value_or(std::numeric_limits<double>::infinity());
+    at_least_.energy_budget_j = estimates_.energy_budget_j;
+    expected_ = expected_legs(problem, bounds_, outside, [this] { return options_.stop.stop_requested(); });
     for (std::size_t from = 0; from <= outside; ++from) {
         bound_legs_from(from);
     }
@@ -110,17 +73,31 @@ LegTableOf<Family>::LegTableOf(const Problem& problem, const PlannerModel& model
 template <class Family>
 LegTableOf<Family>::~LegTableOf() = default;
 
-/// Sets the lower bounds of the legs from a place that are not flown.
+/// Sets the estimates and lower bounds of the legs from a place that are not flown.
 template <class Family>
 void LegTableOf<Family>::bound_legs_from(std::size_t from) {
     const Configuration at = from == estimates_.outside() ? place_of(problem_.start) : places_[from].at;
     for (std::size_t to = 0; to <= estimates_.outside(); ++to) {
         if (!is_leg(from, to)) {
-            estimates_.leg(from, to) = to < estimates_.outside() ? LegCost{} : LegCost{0, 0};
+            set(from, to, to < estimates_.outside() ? LegCost{} : LegCost{0, 0});
         } else if (!leg(from, to).is_known && !is_closed(leg(from, to))) {
-            estimates_.leg(from, to) = bounds_[to]->from(at);
+            const LegCost bound = bounds_[to]->from(at), likely = expected(from, to).cost;
+            const bool is_known = std::isfinite(likely.cost) && likely.cost > bound.cost;
+            at_least_.leg(from, to) = bound;
+            estimates_.leg(from, to) = is_known ? likely : bound;
         }
     }
+}
+
+template <class Family>
+ExpectedLegOf<Family> LegTableOf<Family>::expected(std::size_t from, std::size_t to) const {
+    return expected_.empty() ? ExpectedLegOf<Family>() : expected_[number_of(from, to)];
+}
+
+template <class Family>
+void LegTableOf<Family>::set(std::size_t from, std::size_t to, const LegCost& cost) {
+    estimates_.leg(from, to) = cost;
+    at_least_.leg(from, to) = cost;
 }
 
 /// Not between places of one target, nor back to where the flight may end anywhere.
@@ -133,16 +110,22 @@ bool LegTableOf<Family>::is_leg(std::size_t from, std::size_t to) const {
 }
 
 template <class Family>
-LegCosts LegTableOf<Family>::costs_or(const std::optional<LegCost>& other) const {
-    LegCosts costs = estimates_;
+LegCosts LegTableOf<Family>::flown_costs() const {
+    LegCosts none = estimates_;
+    for (std::size_t from = 0; from <= none.outside(); ++from) {
+        for (std::size_t to = 0; to <= none.outside(); ++to) {
+            none.leg(from, to) = is_leg(from, to) ? LegCost{} : none.leg(from, to);
+        }
+    }
+    return flown_or(std::move(none));
+}
+
+template <class Family>
+LegCosts LegTableOf<Family>::flown_or(LegCosts costs) const {
     for (std::size_t from = 0; from <= costs.outside(); ++from) {
         for (std::size_t to = 0; to <= costs.outside(); ++to) {
-            const LegState& state = leg(from, to);
-            if (std::isfinite(state.flown.cost)) {
-                costs.leg(from, to) = state.flown;
-            } else if (is_leg(from, to) && other) {
-                costs.leg(from, to) = *other;
-            }
+            const LegCost& flown = leg(from, to).flown;
+            costs.leg(from, to) = std::isfinite(flown.cost) ? flown : costs.leg(from, to);
         }
     }
     return costs;
@@ -187,15 +170,16 @@ SearchRecord LegTableOf<Family>::fly(std::size_t from, std::size_t to, const Sea
     options.keep_tree = false;
     options.stop_at_first_solution = false;
     options.on_plan = nullptr;
+    options.known_way = expected(from, to).corners;
     const SearchResultOf<Family> result = search_goal(part, part, model_, *before, {}, options);
     const FoundOf<Family>& found = result.found;
     const bool is_unfinished = found.obstruction && found.obstruction->cause == unfinished_flight && found.plan;
     if (found.status != Status::solved && !is_unfinished) {
         if (std::isfinite(state.flown.cost)) {  // there is a flight of a pass before
             state.is_known = true;
-            estimates_.leg(from, to) = state.flown;
+            set(from, to, state.flown);
         } else if (!options_.stop.stop_requested() && ++state.failures >= most_failures_) {
-            estimates_.leg(from, to) = {};
+            set(from, to, {});
         }
         return result.record;
     }
@@ -207,7 +191,7 @@ SearchRecord LegTableOf<Family>::fly(std::size_t from, std::size_t to, const Sea
     legs_flown_ += std::isfinite(state.flown.cost) ? 0 : 1;
     state.flown = cost.cost < state.flown.cost ? cost : state.flown;
     state.is_known = true;
-    estimates_.leg(from, to) = state.flown;
+    set(from, to, state.flown);
     if (!place.hover) {
         place.at = end_of(*found.plan);
         hover.goals.clear();
@@ -225,7 +209,7 @@ SearchRecord LegTableOf<Family>::fly(std::size_t from, std::size_t to, const Sea
 template <class Family>
 void LegTableOf<Family>::give_up(std::size_t from, std::size_t to) {
     leg(from, to) = {false, 0, true, {}};
-    estimates_.leg(from, to) = {};
+    set(from, to, {});
 }
 
 template <class Family>
@@ -234,7 +218,7 @@ void LegTableOf<Family>::put_off(std::size_t to) {
         LegState& state = leg(from, to);
         if (is_leg(from, to) && !std::isfinite(state.flown.cost)) {
             state.failures = std::max(state.failures, most_failures_);
-            estimates_.leg(from, to) = {};
+            set(from, to, {});
         }
     }
 }

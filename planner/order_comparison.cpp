@@ -84,10 +84,12 @@ bool OrderComparisonOf<Family>::fly_missing_legs(const PlaceOrder& order, const 
 template <class Family>
 PlaceOrder OrderComparisonOf<Family>::chosen() const {
     PlaceOrder flown = best_order(limited(table_.flown_costs()));
-    PlaceOrder other = best_order(limited(table_.lower_bounds()), flown.places);
+    PlaceOrder other = best_order(limited(table_.likely_costs()), flown.places);
     const bool is_flown = is_order(flown) && flown.places.size() >= other.places.size();
     // Lower bounds show that no order with other legs is cheaper.
-    flown.is_best = other.is_best && flown.cost <= other.cost * (1 + 1e-9);
+    const PlaceOrder least = best_order(limited(table_.lower_bounds()), flown.places);
+    flown.is_best = least.is_best && is_order(flown) && flown.places.size() >= least.places.size() &&
+                    flown.cost <= least.cost * (1 + 1e-9);
     other.is_best = false;
     return is_flown ? flown : other;
 }

@@ -57,6 +57,7 @@ void FlightTreeSearchOf<Family>::begin(const FlightPoint& start, Random& random,
     growth_.emplace(start, space_, parameters_, flights_, random, sampler);
     refiner_.emplace(start, refined_flights_, refiner_random_);
     growth_->try_first(known_places_);
+    growth_->follow(known_way_);
     if (known_plan_ && known_plan_->reference.size() > 1) {
         refiner_->work_on({*known_plan_});
         if (const FlownPlan* const known = refiner_->best()) {
@@ -76,7 +77,7 @@ template <class Family>
 void FlightTreeSearchOf<Family>::go_on(const StopCondition& terminated,
                                        const std::function<bool(double cost)>& is_enough) {
     const ConditionScope scope(terminated_, terminated);
-    const auto is_done = [&] { return best_ && (stops_at_first_plan_ || (is_enough && is_enough(best_->cost))); };
+    const auto is_done = [&] { return best_ && (suffices(best_->cost) || (is_enough && is_enough(best_->cost))); };
     while (!terminated() && !is_used_up() && !is_done()) {
         if (growth_->has_plan() || refined_flights_.has_counterexamples()) {
             go_on_side_by_side(terminated);
@@ -88,7 +89,7 @@ void FlightTreeSearchOf<Family>::go_on(const StopCondition& terminated,
         if (observer_) {
             observer_();
         }
-        if (stops_at_first_plan_) {
+        if (const auto best = proposal(parameters_.final_gain); best && suffices(best->candidate.cost)) {
             settle_best(terminated);  // at once, and whatever else may have been found beside it
         }
     }

@@ -85,10 +85,13 @@ class FlightTreeSearchOf {
     void set_max_iterations(std::optional<std::uint64_t> iterations) { max_iterations_ = iterations; }
     /// The search ends with the first plan that counts.
     void set_stops_at_first_plan(bool stops) { stops_at_first_plan_ = stops; }
+    /// The search ends with a plan that costs no more and counts; the first one is executed at once.
+    void set_enough_cost(std::optional<double> cost) { enough_cost_ = cost; }
     /// What is known before the next search that begins: see SolveOptions.
-    void set_known(std::optional<Plan> plan, std::vector<Configuration> places) {
+    void set_known(std::optional<Plan> plan, std::vector<Configuration> places, std::vector<Configuration> way) {
         known_plan_ = std::move(plan);
         known_places_ = std::move(places);
+        known_way_ = std::move(way);
     }
     /// Called after every batch, or round, before its plans are executed.
     void set_observer(std::function<void()> observer) { observer_ = std::move(observer); }
@@ -140,6 +143,9 @@ class FlightTreeSearchOf {
     void learn_from(const Proposal& failed, const std::vector<Counterexample>& counterexamples);
     void settle_best(const StopCondition& terminated);
     [[nodiscard]] static std::size_t steps_back_after(int failures_in_a_row);
+    [[nodiscard]] bool suffices(double cost) const noexcept {
+        return stops_at_first_plan_ || (enough_cost_ && cost <= *enough_cost_);
+    }
     [[nodiscard]] double work_beside(const Candidate& candidate) const;
 
     const SearchTask& task_;
@@ -150,8 +156,9 @@ class FlightTreeSearchOf {
     std::function<void()> observer_;
     std::optional<std::uint64_t> max_iterations_;
     bool stops_at_first_plan_ = false;
+    std::optional<double> enough_cost_;
     std::optional<Plan> known_plan_;
-    std::vector<Configuration> known_places_;
+    std::vector<Configuration> known_places_, known_way_;
     const StopCondition* terminated_ = nullptr;  ///< condition of the search under way
 
     PlannedFlights flights_;          ///< flights of the tree

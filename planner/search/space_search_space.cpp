@@ -303,6 +303,10 @@ Rejection SpaceSearchSpace::rejection_at(const Configuration& c, const SpacePose
     return model_.collisions().is_nearer_than(pose, margin_m_) ? Rejection::collision : Rejection::none;
 }
 
+bool SpaceSearchSpace::has_room(const Configuration& c, double more_m) const {
+    return limit_left_at(c) == Rejection::none && !model_.collisions().is_nearer_than(level_at(c), margin_m_ + more_m);
+}
+
 bool SpaceSearchSpace::is_allowed(const Configuration& c, QueryCounts& counts) const {
     const Rejection rejection = rejection_at(c);
     if (rejection == Rejection::collision) {

@@ -88,6 +88,8 @@ class SpaceSearchSpace : public SearchAxesOf<Space> {
     [[nodiscard]] bool is_valid(const Configuration& configuration) const {
         return rejection_at(configuration) == Rejection::none;
     }
+    /// Whether the level vehicle keeps the safety margin there and so much more.
+    [[nodiscard]] bool has_room(const Configuration& configuration, double more_m) const;
 
     /// See SearchSpace.
     [[nodiscard]] bool is_allowed(const Configuration& configuration, QueryCounts& counts) const;

@@ -77,6 +77,15 @@ void TreeGrowthOf<Family>::try_first(std::vector<Configuration> places) {
     std::reverse(first_places_.begin(), first_places_.end());
 }
 
+template <class Family>
+void TreeGrowthOf<Family>::follow(std::vector<Configuration> corners) {
+    way_.corners = std::move(corners);
+    way_.samples = 0;
+    for (std::size_t i = 0; i < way_.corners.size(); ++i) {
+        due_.push_back({std::max<std::uint64_t>(batch_, 1) + i, at_rest(way_.corners[i])});
+    }
+}
+
 /// The next point on the way through a passage that is due, or the first of a new way; nothing where it is the turn of
 /// other samples.
 template <>
@@ -118,13 +127,9 @@ template <>
 bool TreeGrowthOf<Space>::find_way() {
     constexpr std::uint64_t max_iterations = 2000;
     constexpr std::size_t first_wait = 16, most_doublings = 6;
-    way_.corners = narrow_ways_.find(random_, max_iterations, flights_.is_over());
-    way_.samples = 0;
+    follow(narrow_ways_.find(random_, max_iterations, flights_.is_over()));
     way_.failures = way_.corners.empty() ? way_.failures + 1 : 0;
     way_.samples_to_wait = way_.corners.empty() ? first_wait << std::min(way_.failures - 1, most_doublings) : 0;
-    for (std::size_t i = 0; i < way_.corners.size(); ++i) {
-        due_.push_back({batch_ + i, at_rest(way_.corners[i])});
-    }
     return !way_.corners.empty();
 }
 

@@ -44,6 +44,8 @@ class TreeGrowthOf {
     void know_plan(const std::vector<FlightPoint>& moments) { known_plan_ = moments; }
     /// These places are tried first, in their order.
     void try_first(std::vector<Configuration> places);
+    /// The tree grows along this way first; in space only. @param corners as of LevelWaysOf::find()
+    void follow(std::vector<Configuration> corners);
     /// The plan that ends with this hold does not count: no direct flight confirms it.
     void discard(FlightNode& hold);
 

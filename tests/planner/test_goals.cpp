@@ -174,7 +174,9 @@ TEST_CASE("a tour in which the way to one goal takes longer than one has patienc
          {std::pair(7.0, short_s), std::pair(7.0, with_long_check_s), std::pair(1000.0, short_s)}) {
         CAPTURE(patience_s, search_s);
         planning::SequenceEffort effort;
-        effort.patience_s = patience_s;
+        PlannerSettings patience;
+        patience.time_limit_s = patience_s;
+        effort.patience.emplace(patience);
         planning::GoalSequence sequence(problem, model, options, effort, 0);
         std::size_t to_second = 0;
         while (const auto part = sequence.next()) {

@@ -154,6 +154,59 @@ TEST_CASE("a first flight through many targets in space has enough iterations fo
     CHECK(found.planning.improvements.front().iteration <= 17 * 24);
 }
 
+/// Seven targets on each side of a wall that can be passed at one end only, where the flight begins.
+SpaceProblem both_sides_of_a_wall() {
+    SpaceProblem problem = line_of_targets();
+    problem.bounds = {{-5, -5, 1}, {5, 1, 5}};
+    problem.obstacles.push_back({"wall", Box{{8, 0.1, 6}}, {-1.2, -2, 3}});
+    problem.start.position_m = {4.4, -2, 3};
+    problem.goals.clear();
+    for (int i = 0; i < 7; ++i) {
+        for (const double side : {-1.0, 1.0}) {
+            problem.goals.push_back(place(2.1 - 0.9 * i, -2 + 1.1 * side, 3));
+        }
+    }
+    problem.planner.max_iterations = 1500;
+    return problem;
+}
+
+TEST_CASE("the order of many targets in space knows which ways around obstacles are long") {
+    const SpaceProblem problem = both_sides_of_a_wall();
+    const SpaceSearchResult found = solved(problem);
+    REQUIRE(found.status == Status::solved);
+    const std::vector<std::size_t> order = targets_of(found);
+    REQUIRE(order.size() == 14);
+    // One side after the other, and each from the open end: straight ways in free air would cross the wall at its far
+    // end, and come to the second side from there.
+    CHECK(order[0] < 2);
+    CHECK(order[7] < 2);
+    for (std::size_t i = 1; i < order.size(); ++i) {
+        CHECK((i == 7 || order[i] % 2 == order[i - 1] % 2));
+    }
+    CHECK_FALSE(found.order->is_best);  // nothing proves it
+}
+
+TEST_CASE("lower bounds of legs in space are never above what ways around obstacles are expected to take") {
+    const SpaceProblem problem = both_sides_of_a_wall();
+    const planning::PlannerModelOf<Space> model(problem.planner.variant,
+                                                std::make_shared<const SpaceProblemModel>(problem), nullptr);
+    const SpaceSolveOptions options;
+    const planning::LegTableOf<Space> table(problem, model, options);
+    const std::size_t outside = table.estimates().outside();
+    for (std::size_t from = 0; from <= outside; ++from) {
+        for (std::size_t to = 0; to < outside; ++to) {
+            if (from != to) {
+                CHECK(table.at_least().leg(from, to).cost <= table.estimates().leg(from, to).cost);
+            }
+        }
+    }
+    // Along the wall straight motion is all that it takes; through it, at the far end, it takes many times as much.
+    CHECK(table.estimates().leg(10, 12).cost < 2 * table.at_least().leg(10, 12).cost);
+    CHECK(table.estimates().leg(12, 13).cost > 2.5 * table.estimates().leg(10, 12).cost);
+    CHECK(table.expected(12, 13).corners.size() > 2);
+    CHECK(table.expected(10, 12).corners.size() == 1);  // the place itself
+}
+
 TEST_CASE("a target in a closed box in space is left out, and the flight to the others is not called solved") {
     SpaceProblem problem = line_of_targets();
     const auto wall = [&](const char* name, Vector3 size_m, Vector3 center_m) {
