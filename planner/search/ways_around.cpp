@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <queue>
@@ -169,25 +171,24 @@ void WaysAround::search(std::span<const Vector3> from_m) {
 /// The cells of the way of the last search from whose one to the other straight motions take least. Through tight cells
 /// they count longer, as ways do.
 auto WaysAround::corners_to(std::size_t end) -> Corners {
-    std::vector<Vector3> way_m{centre_m(cell_at(end))};
-    for (std::size_t cell = end; befores_[cell] != cell;) {
-        cell = befores_[cell];
-        way_m.push_back(centre_m(cell_at(cell)));
+    std::vector<std::size_t> way{end};
+    while (befores_[way.back()] != way.back()) {
+        way.push_back(befores_[way.back()]);
     }
+    std::vector<Vector3> way_m;
+    std::ranges::transform(way, std::back_inserter(way_m), [&](std::size_t cell) { return centre_m(cell_at(cell)); });
     const auto duration_s = [&](std::size_t from, std::size_t to) {
-        const double weighted_m = straight_length_m(way_m[from], way_m[to]);
-        if (!std::isfinite(weighted_m)) {
-            return infinite;
-        }
+        const double weighted_m =
+            from == to + 1 ? lengths_m_[way[to]] - lengths_m_[way[from]] : straight_length_m(way_m[from], way_m[to]);
         SpaceConfiguration begin{}, finish{};
         std::ranges::copy(way_m[from], begin.begin());
         std::ranges::copy(way_m[to], finish.begin());
         return space_.duration_s(begin, finish) * weighted_m / distance_m(way_m[from], way_m[to]);
     };
     // From the end to the beginning: the least from each on, and where its first motion leads.
-    std::vector<std::pair<double, std::size_t>> rest(way_m.size(), {infinite, 0});
+    std::vector<std::pair<double, std::size_t>> rest(way.size(), {infinite, 0});
     rest.front() = {0, 0};
-    for (std::size_t at = 1; at < way_m.size(); ++at) {
+    for (std::size_t at = 1; at < way.size(); ++at) {
         for (std::size_t to = 0; to < at; ++to) {
             rest[at] = std::min(rest[at], {duration_s(at, to) + rest[to].first, to});
         }

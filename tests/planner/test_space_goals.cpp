@@ -264,7 +264,8 @@ TEST_CASE("OMPL's planners plan in space, twice with the same bytes, and their p
     CHECK(space_planning_errors(problem)[0].key == "motion.yaw");
 }
 
-TEST_CASE("a search in space that comes no nearer to its goal is taken for a dead end") {
+/// Three places on a line in free air, a metre apart, from the start on.
+SpaceProblem three_places() {
     SpaceProblem problem = read("girder_survey");
     problem.obstacles.clear();
     problem.aero.enabled = false;
@@ -275,6 +276,29 @@ TEST_CASE("a search in space that comes no nearer to its goal is taken for a dea
     problem.planner.variant = Variant::mp_arm;
     problem.planner.max_iterations = 150;
     problem.planner.time_limit_s.reset();
+    return problem;
+}
+
+/// What a search comes to that leads on by a metre. @param shift_m of its end to the side
+planning::SearchResultOf<planning::Space> a_metre_on(const SpaceProblem& problem,
+                                                     const planning::CourseOf<planning::Space>& before,
+                                                     double shift_m = 0) {
+    const SpaceConfiguration from = configuration_of(
+        before.plan.reference.empty() ? reference_at(problem.start) : before.plan.reference.back().point);
+    SpaceConfiguration to = from;
+    to[0] += 1;
+    to[1] += shift_m;
+    planning::SearchResultOf<planning::Space> result;
+    result.record.iterations = 4;
+    result.found.plan = SpacePlan{
+        {{0, at_rest(from)}, {500, at_rest(to)}}, 1 / problem.robot.controller.rate_hz, problem.robot.joints()};
+    result.found.cost = 1;
+    result.found.status = Status::solved;
+    return result;
+}
+
+TEST_CASE("a search in space that comes no nearer to its goal is taken for a dead end") {
+    const SpaceProblem problem = three_places();
     const planning::PlannerModelOf<planning::Space> model(problem.planner.variant,
                                                           std::make_shared<const SpaceProblemModel>(problem), nullptr);
     SpaceSolveOptions options;
@@ -286,22 +310,93 @@ TEST_CASE("a search in space that comes no nearer to its goal is taken for a dea
     while (const auto part = sequence.next()) {
         const Comes comes = goals.size() < script.size() ? script[goals.size()] : Comes::there;
         goals.push_back(part->before->goals.size());
-        planning::SearchResultOf<planning::Space> result;
-        result.record.iterations = comes == Comes::there ? 4 : 1;
-        if (comes != Comes::nowhere) {
-            const SpaceConfiguration from =
-                configuration_of(part->before->plan.reference.empty() ? reference_at(problem.start)
-                                                                      : part->before->plan.reference.back().point);
-            SpaceConfiguration to = from;
-            to[0] += 1;
-            result.found.plan = SpacePlan{
-                {{0, at_rest(from)}, {500, at_rest(to)}}, 1 / problem.robot.controller.rate_hz, problem.robot.joints()};
-            result.found.cost = 1;
-            result.found.status = comes == Comes::there ? Status::solved : Status::approximate;
+        planning::SearchResultOf<planning::Space> result = a_metre_on(problem, *part->before);
+        if (comes != Comes::there) {
+            result.record.iterations = 1;
+            result.found.status = Status::approximate;
+        }
+        if (comes == Comes::nowhere) {
+            result.found = {};
         }
         sequence.add(std::move(result));
     }
     // Back to the first part after the dead end; at first not after a search that only took too long.
     CHECK(goals == std::vector<std::size_t>{0, 1, 0, 1, 2, 2});
     CHECK(std::move(sequence).result().found.status == Status::solved);
+}
+
+TEST_CASE("searches for goals in space grow along what is known of their ways") {
+    const SpaceProblem problem = three_places();
+    const planning::PlannerModelOf<planning::Space> model(problem.planner.variant,
+                                                          std::make_shared<const SpaceProblemModel>(problem), nullptr);
+    planning::SequenceEffortOf<planning::Space> effort;
+    for (int goal = 0; goal < 3; ++goal) {
+        SpaceConfiguration corner{};
+        corner[2] = goal;
+        effort.expected.push_back({{100.0 * (goal + 1), 0}, {corner}});
+    }
+    const SpaceSolveOptions options;
+    planning::GoalSequenceOf<planning::Space> sequence(problem, model, options, effort, 0);
+    const auto next = [&] {
+        auto part = sequence.next();
+        REQUIRE(part);
+        return *std::move(part);
+    };
+    // The first search for each goal knows what is expected, and needs no plan that is much cheaper.
+    for (std::size_t goal = 0; goal < 2; ++goal) {
+        const auto part = next();
+        CHECK(part.options.known_way == effort.expected[goal].corners);
+        CHECK(part.options.enough_cost == Approx(1.25 * effort.expected[goal].cost.cost));
+        CHECK_FALSE(part.options.stop_at_first_solution);
+        CHECK(part.problem.planner.max_iterations >= 24U);
+        sequence.add(a_metre_on(problem, *part.before));
+    }
+    planning::SearchResultOf<planning::Space> weak = a_metre_on(problem, *next().before);
+    weak.found.status = Status::approximate;
+    weak.weak_goal = 0;
+    sequence.add(std::move(weak));
+    // Back at the first goal: another way is wanted there, and the ones after it are known.
+    const auto first = next();
+    CHECK(first.before->goals.empty());
+    CHECK(first.options.known_way.empty());
+    CHECK(first.options.enough_cost == Approx(125));
+    sequence.add(a_metre_on(problem, *first.before, 0.1));
+    const auto second = next();
+    REQUIRE(second.options.known_way.size() == 1);
+    CHECK(second.options.known_way[0][0] == Approx(problem.start.position_m[0] + 2));
+    sequence.add(a_metre_on(problem, *second.before));
+    const auto third = next();
+    CHECK(third.options.known_way.empty());
+    sequence.add(a_metre_on(problem, *third.before));
+    // Once there is a whole way, the next round begins with it and asks for cheaper plans.
+    const auto again = next();
+    CHECK(again.before->goals.empty());
+    REQUIRE(again.options.known_way.size() == 1);
+    CHECK(again.options.known_way[0][1] == Approx(problem.start.position_m[1] + 0.1));
+    CHECK_FALSE(again.options.enough_cost);
+}
+
+TEST_CASE("a sequence in space ends where the way to one goal takes more iterations than one has patience for") {
+    SpaceProblem problem = three_places();
+    problem.planner.max_iterations = 1000;
+    const planning::PlannerModelOf<planning::Space> model(problem.planner.variant,
+                                                          std::make_shared<const SpaceProblemModel>(problem), nullptr);
+    planning::SequenceEffortOf<planning::Space> effort;
+    effort.patience = planning::SearchBudget(problem.planner).part(0.25);
+    const SpaceSolveOptions options;
+    planning::GoalSequenceOf<planning::Space> sequence(problem, model, options, effort, 0);
+    std::size_t in_vain = 0;
+    while (const auto part = sequence.next()) {
+        auto result = a_metre_on(problem, *part->before);
+        if (part->before->goals.size() == 1) {
+            result.found.status = Status::approximate;  // nearer, not there
+            result.record.iterations = *part->problem.planner.max_iterations;
+            ++in_vain;
+        }
+        sequence.add(std::move(result));
+    }
+    const auto result = std::move(sequence).result();
+    CHECK(result.hard_goal == std::optional<std::size_t>(1));
+    CHECK(in_vain == 2);  // searches of 84 and 168 iterations
+    CHECK(result.record.iterations < 300);
 }
