@@ -90,11 +90,11 @@ class AnyOrder {
     const Problem& problem_;
     const PlannerModel& model_;
     const SolveOptions& options_;
+    Stopwatch clock_;      ///< what the table asks before anything is flown counts, too
     SolveOptions silent_;  ///< for searches of which the caller hears nothing
     LegTableOf<Family> table_;
     SearchBudget left_;
     OrderComparisonOf<Family> comparison_;
-    Stopwatch clock_;
     double spent_at_s_ = 0;                                  ///< when time was last taken from what is left
     double told_at_s_ = 0;                                   ///< when the caller was last told of legs
     bool is_thrifty_ = false;                                ///< the first plan of each leg may take too much energy

@@ -126,7 +126,9 @@ std::vector<ExpectedLegOf<Space>> expected_legs(const SpaceProblem& problem,
         add(places_at_goal(bounds[to]->space(), to));
     }
     add({start});
-    WaysAround ways(bounds.front()->space(), start, problem.robot.rotor_radius_m, all_m);
+    constexpr double most_cells = 1 << 17, most_in_all = 1 << 22;  // a search through these takes about a second
+    WaysAround ways(bounds.front()->space(), start, problem.robot.rotor_radius_m, all_m,
+                    std::min(most_cells, most_in_all / static_cast<double>(places.size())));
 
     std::vector<ExpectedLegOf<Space>> legs((targets + 1) * (targets + 1));
     for (std::size_t from = 0; from <= targets && !(is_over && is_over()); ++from) {

@@ -22,11 +22,10 @@ double distance_m(const Vector3& a, const Vector3& b) {
 }  // namespace
 
 WaysAround::WaysAround(const SpaceSearchSpace& space, const SpaceConfiguration& transport, double room_m,
-                       std::span<const Vector3> places_m)
+                       std::span<const Vector3> places_m, double most_cells)
     : space_(space), transport_(transport), room_m_(room_m) {
     constexpr double around_m = 4;  // all places, for ways around what stands between them
     constexpr double least_edge_m = 0.25;
-    constexpr double most_cells = 1 << 17;
     Vector3 size_m{};
     for (std::size_t i = 0; i < 3; ++i) {
         const auto of_axis = [i](const Vector3& a, const Vector3& b) { return a[i] < b[i]; };
@@ -39,60 +38,68 @@ WaysAround::WaysAround(const SpaceSearchSpace& space, const SpaceConfiguration& 
         counts_[i] = std::max(1, static_cast<int>(size_m[i] / edge_m_));
         low_m_[i] += 0.5 * (size_m[i] - counts_[i] * edge_m_);
     }
-    rooms_.resize(static_cast<std::size_t>(counts_[0]) * counts_[1] * counts_[2]);
+    weights_.assign(number_of({counts_[0], counts_[1], counts_[2]}) + 1, infinite);
+    befores_.resize(weights_.size());
+    for (int z = 0; z < counts_[2]; ++z) {
+        for (int y = 0; y < counts_[1]; ++y) {
+            std::fill_n(weights_.begin() + static_cast<std::ptrdiff_t>(number_of({0, y, z})), counts_[0], 0.0);
+        }
+    }
+    const auto origin = static_cast<std::ptrdiff_t>(number_of({0, 0, 0}));
+    for (int z = -1; z <= 1; ++z) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int x = -1; x <= 1; ++x) {
+                if (x != 0 || y != 0 || z != 0) {
+                    steps_.push_back({static_cast<std::ptrdiff_t>(number_of({x, y, z})) - origin,
+                                      edge_m_ * std::sqrt(x * x + y * y + z * z)});
+                }
+            }
+        }
+    }
 }
 
-std::size_t WaysAround::number_of(const Cell& cell) const noexcept {
-    return (static_cast<std::size_t>(cell[2]) * counts_[1] + cell[1]) * counts_[0] + cell[0];
-}
-
-auto WaysAround::cell_at(std::size_t number) const noexcept -> Cell {
-    const auto rest = static_cast<int>(number) / counts_[0];
-    return {static_cast<int>(number) % counts_[0], rest % counts_[1], rest / counts_[1]};
+/// @param cell from -1 to its count in each direction
+std::size_t WaysAround::number_of(const std::array<int, 3>& cell) const noexcept {
+    const auto size = [&](std::size_t i) { return static_cast<std::size_t>(counts_[i]) + 2; };
+    const auto at = [&](std::size_t i) { return static_cast<std::size_t>(cell[i] + 1); };
+    return (at(2) * size(1) + at(1)) * size(0) + at(0);
 }
 
 /// The cell in which a place is or, outside the grid, the nearest one.
-auto WaysAround::cell_of(const Vector3& at_m) const noexcept -> Cell {
-    Cell cell{};
+std::array<int, 3> WaysAround::cell_of(const Vector3& at_m) const noexcept {
+    std::array<int, 3> cell{};
     for (std::size_t i = 0; i < 3; ++i) {
         cell[i] = std::clamp(static_cast<int>(std::floor((at_m[i] - low_m_[i]) / edge_m_)), 0, counts_[i] - 1);
     }
     return cell;
 }
 
-Vector3 WaysAround::centre_m(const Cell& cell) const noexcept {
-    return low_m_ + edge_m_ * Vector3{cell[0] + 0.5, cell[1] + 0.5, cell[2] + 0.5};
+Vector3 WaysAround::centre_m(std::size_t cell) const noexcept {
+    Vector3 centre_m = low_m_;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const auto size = static_cast<std::size_t>(counts_[i]) + 2;
+        centre_m[i] += edge_m_ * (static_cast<double>(cell % size) - 0.5);
+        cell /= size;
+    }
+    return centre_m;
 }
 
-bool WaysAround::is_within(const Cell& cell) const noexcept {
-    return cell[0] >= 0 && cell[1] >= 0 && cell[2] >= 0 && cell[0] < counts_[0] && cell[1] < counts_[1] &&
-           cell[2] < counts_[2];
-}
-
-auto WaysAround::room_at(const Cell& cell) -> Room {
-    Room& room = rooms_[number_of(cell)];
-    if (room == Room::unknown) {
-        constexpr int headings = 8;
-        room = Room::none;
-        SpaceConfiguration at = transport_;
-        std::ranges::copy(centre_m(cell), at.begin());
-        for (int i = 0; i < headings && room != Room::wide; ++i) {
-            at[space::yaw] = std::numbers::pi * (2.0 * i / headings - 1);
-            if (space_.has_room(at, room_m_)) {
-                room = Room::wide;
-            } else if (room == Room::none && space_.is_valid(at)) {
-                room = Room::tight;
-            }
+double WaysAround::weight_at(const Vector3& at_m) const {
+    constexpr double of_tight = 3;
+    constexpr int headings = 8;
+    double weight = infinite;
+    SpaceConfiguration at = transport_;
+    std::ranges::copy(at_m, at.begin());
+    for (int i = 0; i < headings; ++i) {
+        at[space::yaw] = std::numbers::pi * (2.0 * i / headings - 1);
+        if (space_.has_room(at, room_m_)) {
+            return 1;
+        }
+        if (std::isinf(weight) && space_.is_valid(at)) {
+            weight = of_tight;
         }
     }
-    return room;
-}
-
-/// What a way through a cell counts for each metre.
-double WaysAround::weight(const Cell& cell) {
-    constexpr double of_tight = 3;
-    const Room room = room_at(cell);
-    return room == Room::wide ? 1 : room == Room::tight ? of_tight : infinite;
+    return weight;
 }
 
 /// The weighted length of a straight way.
@@ -101,7 +108,8 @@ double WaysAround::straight_length_m(const Vector3& from_m, const Vector3& to_m)
     const int pieces = static_cast<int>(std::ceil(2 * length_m / edge_m_));
     double sum_m = 0;
     for (int i = 0; i < pieces && std::isfinite(sum_m); ++i) {
-        sum_m += length_m / pieces * weight(cell_of(from_m + (i + 0.5) / pieces * (to_m - from_m)));
+        const Vector3 at_m = from_m + (i + 0.5) / pieces * (to_m - from_m);
+        sum_m += length_m / pieces * weight(number_of(cell_of(at_m)));
     }
     return sum_m;
 }
@@ -109,30 +117,30 @@ double WaysAround::straight_length_m(const Vector3& from_m, const Vector3& to_m)
 /// The nearest open cell of a place; nothing where none is near.
 std::optional<std::size_t> WaysAround::entry_of(const Vector3& place_m) {
     constexpr int most_rings = 4;
-    const Cell middle = cell_of(place_m);
-    for (int ring = 0; ring <= most_rings; ++ring) {
-        std::pair<double, std::size_t> nearest{infinite, 0};
-        for (int z = -ring; z <= ring; ++z) {
-            for (int y = -ring; y <= ring; ++y) {
-                const bool is_side = std::max(std::abs(z), std::abs(y)) == ring;
-                for (int x = -ring; x <= ring; x += is_side || ring == 0 ? 1 : 2 * ring) {
-                    const Cell cell{middle[0] + x, middle[1] + y, middle[2] + z};
-                    if (is_within(cell) && room_at(cell) != Room::none) {
-                        nearest = std::min(nearest, {distance_m(place_m, centre_m(cell)), number_of(cell)});
+    const std::array<int, 3> middle = cell_of(place_m);
+    std::pair<double, std::size_t> nearest{infinite, 0};
+    for (int ring = 0; ring <= most_rings && std::isinf(nearest.first); ++ring) {
+        std::array<int, 3> low{}, high{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            low[i] = std::max(middle[i] - ring, 0);
+            high[i] = std::min(middle[i] + ring, counts_[i] - 1);
+        }
+        for (int z = low[2]; z <= high[2]; ++z) {
+            for (int y = low[1]; y <= high[1]; ++y) {
+                for (int x = low[0]; x <= high[0]; ++x) {
+                    const std::size_t cell = number_of({x, y, z});
+                    if (std::isfinite(weight(cell))) {
+                        nearest = std::min(nearest, {distance_m(place_m, centre_m(cell)), cell});
                     }
                 }
             }
         }
-        if (std::isfinite(nearest.first)) {
-            return nearest.second;
-        }
     }
-    return std::nullopt;
+    return std::isfinite(nearest.first) ? std::optional(nearest.second) : std::nullopt;
 }
 
 void WaysAround::search(std::span<const Vector3> from_m) {
-    lengths_m_.assign(rooms_.size(), infinite);
-    befores_.resize(rooms_.size());
+    lengths_m_.assign(weights_.size(), infinite);
     using Open = std::pair<double, std::size_t>;
     std::priority_queue<Open, std::vector<Open>, std::greater<>> open;
     const auto reach = [&](std::size_t cell, double length_m, std::size_t before) {
@@ -148,22 +156,15 @@ void WaysAround::search(std::span<const Vector3> from_m) {
         }
     }
     while (!open.empty()) {
-        const auto [length_m, number] = open.top();
+        const auto [length_m, cell] = open.top();
         open.pop();
-        if (length_m > lengths_m_[number]) {
+        if (length_m > lengths_m_[cell]) {
             continue;
         }
-        const Cell cell = cell_at(number);
-        for (int z = -1; z <= 1; ++z) {
-            for (int y = -1; y <= 1; ++y) {
-                for (int x = -1; x <= 1; ++x) {
-                    const Cell next{cell[0] + x, cell[1] + y, cell[2] + z};
-                    if ((x != 0 || y != 0 || z != 0) && is_within(next) && room_at(next) != Room::none) {
-                        const double step_m = edge_m_ * std::sqrt(x * x + y * y + z * z);
-                        reach(number_of(next), length_m + 0.5 * step_m * (weight(cell) + weight(next)), number);
-                    }
-                }
-            }
+        const double half_weight = 0.5 * weight(cell);
+        for (const Step& step : steps_) {
+            const std::size_t next = cell + static_cast<std::size_t>(step.number);
+            reach(next, length_m + step.length_m * (half_weight + 0.5 * weight(next)), cell);
         }
     }
 }
@@ -176,7 +177,7 @@ auto WaysAround::corners_to(std::size_t end) -> Corners {
         way.push_back(befores_[way.back()]);
     }
     std::vector<Vector3> way_m;
-    std::ranges::transform(way, std::back_inserter(way_m), [&](std::size_t cell) { return centre_m(cell_at(cell)); });
+    std::ranges::transform(way, std::back_inserter(way_m), [&](std::size_t cell) { return centre_m(cell); });
     const auto duration_s = [&](std::size_t from, std::size_t to) {
         const double weighted_m =
             from == to + 1 ? lengths_m_[way[to]] - lengths_m_[way[from]] : straight_length_m(way_m[from], way_m[to]);

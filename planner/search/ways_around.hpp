@@ -22,9 +22,10 @@ class WaysAround {
 
     /// The grid covers some places and the room around them within the bounds.
     /// @param transport with the arm of the vehicle   @param room_m beside the safety margin [m]   @param places_m not
-    /// empty   @param space must outlive it
+    /// empty   @param most_cells about so many: cells are of 0.25 m or, where this would be more, larger   @param space
+    /// must outlive it
     WaysAround(const SpaceSearchSpace& space, const SpaceConfiguration& transport, double room_m,
-               std::span<const Vector3> places_m);
+               std::span<const Vector3> places_m, double most_cells = 1 << 17);
 
     /// From the nearest of some places to each of others: the corners between the two, of which none can be left out;
     /// empty where the way is straight, nothing where there is none.
@@ -33,16 +34,19 @@ class WaysAround {
                                                            std::span<const std::vector<Vector3>> to_m);
 
  private:
-    using Cell = std::array<int, 3>;
-    enum class Room : std::uint8_t { unknown, wide, tight, none };
+    /// How far cells are apart that touch each other: their numbers, and their centres [m].
+    struct Step {
+        std::ptrdiff_t number;
+        double length_m;
+    };
 
-    [[nodiscard]] std::size_t number_of(const Cell& cell) const noexcept;
-    [[nodiscard]] Cell cell_at(std::size_t number) const noexcept;
-    [[nodiscard]] Cell cell_of(const Vector3& at_m) const noexcept;
-    [[nodiscard]] Vector3 centre_m(const Cell& cell) const noexcept;
-    [[nodiscard]] bool is_within(const Cell& cell) const noexcept;
-    [[nodiscard]] Room room_at(const Cell& cell);
-    [[nodiscard]] double weight(const Cell& cell);
+    [[nodiscard]] std::size_t number_of(const std::array<int, 3>& cell) const noexcept;
+    [[nodiscard]] std::array<int, 3> cell_of(const Vector3& at_m) const noexcept;
+    [[nodiscard]] Vector3 centre_m(std::size_t cell) const noexcept;
+    [[nodiscard]] double weight(std::size_t cell) {
+        return weights_[cell] > 0 ? weights_[cell] : weights_[cell] = weight_at(centre_m(cell));
+    }
+    [[nodiscard]] double weight_at(const Vector3& at_m) const;
     [[nodiscard]] double straight_length_m(const Vector3& from_m, const Vector3& to_m);
     [[nodiscard]] std::optional<std::size_t> entry_of(const Vector3& place_m);
     void search(std::span<const Vector3> from_m);
@@ -50,11 +54,12 @@ class WaysAround {
 
     const SpaceSearchSpace& space_;
     SpaceConfiguration transport_;
-    Vector3 low_m_{};
     double room_m_;
+    Vector3 low_m_{};
     double edge_m_ = 0;
-    Cell counts_{};
-    std::vector<Room> rooms_;
+    std::array<int, 3> counts_{};  ///< of cells; around them lies a layer that is closed
+    std::vector<Step> steps_;
+    std::vector<double> weights_;       ///< what a metre through each cell counts; infinite: closed, 0: not known yet
     std::vector<double> lengths_m_;     ///< weighted ones of the ways of the last search to every cell
     std::vector<std::size_t> befores_;  ///< the cell before on these ways; itself at their beginnings
 };
