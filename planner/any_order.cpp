@@ -119,13 +119,14 @@ void AnyOrder<Family>::spend(std::uint64_t iterations_before) {
 constexpr double share_of_more_legs = 0.2;
 
 /// First a flight through all in the order that looks best, where only time is limited with all of it: a list in that
-/// order would have no more. Then orders are compared; then a flight in the best of them or, where there is none, in
-/// the next one.
+/// order would have no more. Where that order is settled, the flight gets all limits, and that is all. Else orders are
+/// compared; then a flight in the best of them or, where there is none, in the next one.
 template <class Family>
 void AnyOrder<Family>::search() {
     constexpr double share_of_first = 0.15, share_of_legs = 0.35, share_before_a_way = 0.15;
     const PlaceOrder likely = comparison_.likely();
-    is_thrifty_ = is_limited() && !((is_timed() || knows_ways<Family>)&&has_energy_to_spare(likely));
+    const bool may_fly_at_once = is_timed() || knows_ways<Family>;
+    is_thrifty_ = is_limited() && !(may_fly_at_once && has_energy_to_spare(likely));
     if (!is_thrifty_ && is_settled(likely)) {
         if (attempt(likely, left_, options_.stop_at_first_solution)) {
             return;
@@ -193,8 +194,7 @@ bool AnyOrder<Family>::finds_more_places() {
     return true;
 }
 
-/// Whether first plans of its legs are likely to take no more than the budget: they may be twice as dear as lower
-/// bounds.
+/// Whether first plans of its legs are likely to take no more than the budget: they may be twice as dear as estimates.
 template <class Family>
 bool AnyOrder<Family>::has_energy_to_spare(const PlaceOrder& order) const {
     constexpr double factor = 2;

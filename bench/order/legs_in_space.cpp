@@ -1,6 +1,6 @@
 // What the legs between the targets of a problem in space cost, each planned as a problem of its own. Prints a table of
-// numbers: a row for each begin, the start last, and in it a column for each end, the place to return to last; `inf`
-// where no flight was found, `nan` where there is no leg.
+// numbers: a row for each target and one for the start, and in it a column for each target and one for the place to
+// return to; `inf` where no flight was found, `nan` where there is no leg.
 
 #include <fmt/core.h>
 
@@ -39,6 +39,7 @@ class Legs {
         problem_.planner.time_limit_s.reset();
         problem_.planner.max_iterations = options.iterations;
         ends_ = problem_.goals;
+        targets_ = ends_.size();
         if (problem_.return_to) {
             ends_.push_back(*problem_.return_to);
             problem_.return_to.reset();
@@ -50,16 +51,16 @@ class Legs {
     /// The costs of a table, with nan on its diagonal.
     [[nodiscard]] std::vector<std::vector<double>> costs() const {
         std::vector<SpaceStart> starts(ends_.size(), problem_.start);
-        std::vector<std::vector<double>> rows(ends_.size() + 1, std::vector<double>(ends_.size(), std::nan("")));
+        std::vector<std::vector<double>> rows(targets_ + 1, std::vector<double>(ends_.size(), std::nan("")));
         run_parallel(ends_.size(), options_.jobs,
                      [&](std::size_t to) { rows.back()[to] = cost(problem_.start, to, &starts[to]); });
-        run_parallel(ends_.size(), options_.jobs, [&](std::size_t from) {
+        run_parallel(targets_, options_.jobs, [&](std::size_t from) {
             for (std::size_t to = 0; to < ends_.size(); ++to) {
                 if (to != from) {
                     rows[from][to] = cost(starts[from], to, nullptr);
                 }
             }
-            fmt::print(stderr, "legs from {} of {}\n", from + 1, ends_.size());
+            fmt::print(stderr, "legs from {} of {}\n", from + 1, targets_);
         });
         return rows;
     }
@@ -97,7 +98,8 @@ class Legs {
 
     Options options_;
     SpaceProblem problem_;
-    std::vector<SpaceGoal> ends_;
+    std::vector<SpaceGoal> ends_;  ///< the targets, and the place to return to
+    std::size_t targets_ = 0;
     SpaceSolveOptions how_;
 };
 

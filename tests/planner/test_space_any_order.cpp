@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "downwash/planner/leg_table.hpp"
+#include "downwash/planner/order_comparison.hpp"
 #include "downwash/planner/space_solve.hpp"
 #include "downwash/problems/space_problem_model.hpp"
 #include "downwash/problems/space_problem_reader.hpp"
@@ -184,6 +185,23 @@ TEST_CASE("the order of many targets in space knows which ways around obstacles 
         CHECK((i == 7 || order[i] % 2 == order[i - 1] % 2));
     }
     CHECK_FALSE(found.order->is_best);  // nothing proves it
+}
+
+TEST_CASE("what is expected of legs in space proves no order best") {
+    SpaceProblem problem = both_sides_of_a_wall();
+    problem.goals.resize(6);
+    const planning::PlannerModelOf<Space> model(problem.planner.variant,
+                                                std::make_shared<const SpaceProblemModel>(problem), nullptr);
+    const SpaceSolveOptions options;
+    planning::LegTableOf<Space> table(problem, model, options);
+    planning::OrderComparisonOf<Space> comparison(table, [] { return false; });
+    static_cast<void>(comparison.compare(planning::SearchBudget(problem.planner)));
+    const planning::PlaceOrder chosen = comparison.chosen();
+    REQUIRE(chosen.places.size() == 6);
+    // No other order is expected to cost less, but nothing was flown through the wall, where straight ways are short.
+    CHECK(best_order(table.likely_costs()).places == chosen.places);
+    CHECK(best_order(table.lower_bounds()).cost < chosen.cost);
+    CHECK_FALSE(chosen.is_best);
 }
 
 TEST_CASE("lower bounds of legs in space are never above what ways around obstacles are expected to take") {
