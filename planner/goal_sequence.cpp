@@ -146,7 +146,7 @@ auto GoalSequenceOf<Family>::budget_of(std::size_t part) const -> SearchBudget {
     const double first_share = (is_thrifty() ? 0.6 : 0.25) / static_cast<double>(goals_.size());
     const int doublings = static_cast<int>(std::min(given_up_[part], 30U));
     return whole_.part(first_share)
-        .at_least_iterations(min_iterations_of_part<Family>)
+        .at_least_iterations(expects_ways() ? min_iterations_of_part<Family> : 0)
         .within_s(longest_first_s)
         .part(std::ldexp(1.0, doublings))
         .at_most(whole_);
@@ -234,23 +234,20 @@ bool GoalSequenceOf<Family>::goes_on_after(SearchResult part) {
     return true;
 }
 
-/// A search for a goal grows along the part of the best way so far. Before there is one, it grows along the part that
-/// was left to go back, the first one along the way that is expected; and a first plan is good enough if it costs not
-/// much more than that.
+/// A search for a goal grows along the part of the best way so far. Before there is one, the first search grows along
+/// the way that is expected, and later ones along the part that was left to go back; and a first plan is good enough if
+/// it costs not much more than is expected.
 template <class Family>
 void GoalSequenceOf<Family>::use_what_is_known(std::size_t goal, SolveOptions& options) {
+    if (!expects_ways() || problem_.planner.algorithm != "rrt-star") {
+        return;
+    }
     if (has_way()) {
         options.known_way = part_ways_[goal];
         return;
     }
-    options.known_way = std::exchange(left_ways_[goal], {});
-    if (goal >= effort_.expected.size() || problem_.planner.algorithm != "rrt-star") {
-        return;
-    }
     const ExpectedLegOf<Family>& expected = effort_.expected[goal];
-    if (searches_[goal] == 0) {
-        options.known_way = expected.corners;
-    }
+    options.known_way = searches_[goal] == 0 ? expected.corners : std::exchange(left_ways_[goal], {});
     if (options.stop_at_first_solution && std::isfinite(expected.cost.cost)) {
         constexpr double much_more = 1.25;
         options.stop_at_first_solution = false;

@@ -26,8 +26,8 @@ struct SequenceEffortOf {
     bool ends_with_first_plan = false;
     /// It ends when the searches for the way to one goal took all this in vain, until there is a whole way.
     std::optional<SearchBudget> patience;
-    /// For each goal, or empty: the first search for it grows along the way that is expected, and goes on until its
-    /// plan costs not much more.
+    /// In space, for each goal, or empty: the first search for it grows along the way that is expected, and goes on
+    /// until its plan costs not much more; later ones grow along ways that were found before.
     std::vector<ExpectedLegOf<Family>> expected;
 };
 using SequenceEffort = SequenceEffortOf<Plane>;
@@ -100,6 +100,7 @@ class DOWNWASH_EXPORT GoalSequenceOf {
     [[nodiscard]] bool goes_on_after(SearchResult part);
     [[nodiscard]] bool go_back(std::size_t part);
     [[nodiscard]] bool give_up(bool came_nearer);
+    [[nodiscard]] bool expects_ways() const { return !effort_.expected.empty(); }
     [[nodiscard]] bool is_thrifty() const { return problem_.energy_budget_j && !effort_.has_energy_to_spare; }
     void end_round();
     [[nodiscard]] SearchBudget budget_of(std::size_t part) const;

@@ -82,9 +82,9 @@ void LegTableOf<Family>::bound_legs_from(std::size_t from) {
             set(from, to, to < estimates_.outside() ? LegCost{} : LegCost{0, 0});
         } else if (!leg(from, to).is_known && !is_closed(leg(from, to))) {
             const LegCost bound = bounds_[to]->from(at), likely = expected(from, to).cost;
-            const bool is_known = std::isfinite(likely.cost) && likely.cost > bound.cost;
+            const bool is_expected = std::isfinite(likely.cost) && likely.cost > bound.cost;
             at_least_.leg(from, to) = bound;
-            estimates_.leg(from, to) = is_known ? likely : bound;
+            estimates_.leg(from, to) = is_expected ? likely : bound;
         }
     }
 }
