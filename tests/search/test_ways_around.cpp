@@ -123,7 +123,7 @@ TEST_CASE("there is no way through a wall that leaves nothing open") {
 TEST_CASE("the nearest of several places counts, at both ends") {
     const Fixture f(walled_problem());
     const std::vector<Vector3> begins_m{{-1, 1.5, 1.5}, {-1, -2, 1.5}};
-    const std::vector<std::vector<Vector3>> ends_m{{{1, 1.5, 1.5}, {1, -2, 1.5}}, {{-1.5, 1.5, 1.5}}};
+    const std::vector<std::vector<Vector3>> ends_m{{{1, -2, 1.5}, {1, 1.5, 1.5}}, {{-1.5, 1.5, 1.5}}};
     std::vector<Vector3> all_m = begins_m;
     for (const std::vector<Vector3>& some_m : ends_m) {
         all_m.insert(all_m.end(), some_m.begin(), some_m.end());
@@ -132,7 +132,7 @@ TEST_CASE("the nearest of several places counts, at both ends") {
     const auto corners_m = ways.from(begins_m, ends_m);
     REQUIRE(corners_m.size() == 2);
     REQUIRE(corners_m[0]);
-    CHECK(corners_m[0]->empty());  // from the second to the second, past the end of the wall
+    CHECK(corners_m[0]->empty());  // from the second to the first, past the end of the wall
     REQUIRE(corners_m[1]);
     CHECK(corners_m[1]->empty());
 }
