@@ -83,15 +83,16 @@ bool OrderComparisonOf<Family>::fly_missing_legs(const PlaceOrder& order, const 
 
 template <class Family>
 PlaceOrder OrderComparisonOf<Family>::chosen() const {
-    PlaceOrder flown = best_order(limited(table_.flown_costs()));
-    PlaceOrder other = best_order(limited(table_.likely_costs()), flown.places);
-    const bool is_flown = is_order(flown) && flown.places.size() >= other.places.size();
-    // Lower bounds show that no order with other legs is cheaper.
-    const PlaceOrder least = best_order(limited(table_.lower_bounds()), flown.places);
-    flown.is_best = least.is_best && is_order(flown) && flown.places.size() >= least.places.size() &&
-                    flown.cost <= least.cost * (1 + 1e-9);
-    other.is_best = false;
-    return is_flown ? flown : other;
+    const LegCosts costs = limited(table_.likely_costs());
+    PlaceOrder chosen = best_order(costs);
+    if (PlaceOrder other = best_order(costs, chosen.places);
+        !is_order(chosen) || other.places.size() > chosen.places.size()) {
+        chosen = std::move(other);
+    }
+    // What is expected of legs proves nothing.
+    const PlaceOrder least = best_order(limited(table_.lower_bounds()), chosen.places);
+    chosen.is_best = least.is_best && is_order(chosen) && chosen.cost <= least.cost * (1 + 1e-9);
+    return chosen;
 }
 
 template class OrderComparisonOf<Plane>;

@@ -22,10 +22,10 @@ class DOWNWASH_EXPORT OrderComparisonOf {
     /// @return the work of all searches
     [[nodiscard]] SearchRecord compare(const SearchBudget& budget);
 
-    /// The best order of simulated legs only or, if lower bounds allow an order with more targets, that one.
+    /// The best order by the cheapest simulations of legs and, for the others, estimates.
     [[nodiscard]] PlaceOrder chosen() const;
 
-    /// The best order by simulated legs and, for the others, lower bounds.
+    /// The same by the simulations of this pass alone.
     [[nodiscard]] PlaceOrder likely() const { return best_order(limited(table_.estimates())); }
 
     double energy_limit_j;  ///< for all legs of an order; callers adjust it, as legs only approximate a flight

@@ -62,8 +62,8 @@ struct SolveOptionsOf {
     /// it; places are tried before random ones, in their order. Of a problem with a single goal; rrt-star only.
     std::optional<Plan> known_plan;
     std::vector<Configuration> known_places;
-    /// The same, in space alone: corners of a way of the level vehicle, from the first one after the start to one in the
-    /// goal region, along which the tree grows first.
+    /// The same, in space alone: corners of a way of the level vehicle, from the first one after the start to one in
+    /// the goal region, along which the tree grows first.
     std::vector<Configuration> known_way;
     bool stop_at_first_solution = false;
     std::optional<double> enough_cost;  ///< a plan that costs no more ends the search; of a single goal; rrt-star only
