@@ -110,6 +110,17 @@ bool LegTableOf<Family>::is_leg(std::size_t from, std::size_t to) const {
 }
 
 template <class Family>
+LegCosts LegTableOf<Family>::flown_costs() const {
+    LegCosts none = estimates_;
+    for (std::size_t from = 0; from <= none.outside(); ++from) {
+        for (std::size_t to = 0; to <= none.outside(); ++to) {
+            none.leg(from, to) = is_leg(from, to) ? LegCost{} : none.leg(from, to);
+        }
+    }
+    return flown_or(std::move(none));
+}
+
+template <class Family>
 LegCosts LegTableOf<Family>::flown_or(LegCosts costs) const {
     for (std::size_t from = 0; from <= costs.outside(); ++from) {
         for (std::size_t to = 0; to <= costs.outside(); ++to) {

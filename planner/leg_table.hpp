@@ -41,6 +41,8 @@ class DOWNWASH_EXPORT LegTableOf {
     [[nodiscard]] const LegCosts& estimates() const noexcept { return estimates_; }
     /// The same with lower bounds of the legs that were not flown.
     [[nodiscard]] const LegCosts& at_least() const noexcept { return at_least_; }
+    /// The cheapest flights of all passes alone: other legs are infinite.
+    [[nodiscard]] LegCosts flown_costs() const;
     /// The cheapest flights of all passes, with estimates of the legs that have none.
     [[nodiscard]] LegCosts likely_costs() const { return flown_or(estimates_); }
     /// The cheapest flights of all passes, with lower bounds of the legs that have none.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "downwash/planner/stopwatch.hpp"
@@ -42,8 +43,8 @@ bool OrderComparisonOf<Family>::converges(const SearchBudget& slice, Work& work)
     bool is_nearest_first = true;
     std::vector<std::size_t> hint;
     while (!is_over(work)) {
-        const PlaceOrder order = is_nearest_first ? nearest_first(limited(table_.estimates()))
-                                                  : best_order(limited(table_.estimates()), hint);
+        const PlaceOrder order =
+            is_nearest_first ? nearest_first(limited(table_.at_least())) : best_order(limited(table_.at_least()), hint);
         const bool is_flown = !is_order(order) || !fly_missing_legs(order, slice, work);
         if (is_flown && !std::exchange(is_nearest_first, false)) {
             return true;
@@ -83,9 +84,11 @@ bool OrderComparisonOf<Family>::fly_missing_legs(const PlaceOrder& order, const 
 
 template <class Family>
 PlaceOrder OrderComparisonOf<Family>::chosen() const {
-    const LegCosts costs = limited(table_.likely_costs());
-    PlaceOrder chosen = best_order(costs);
-    if (PlaceOrder other = best_order(costs, chosen.places);
+    // What ways around obstacles take from corner to corner is more than what flights take: estimates in space are not
+    // weighed against flights. Lower bounds in the plane are.
+    constexpr bool weighs_estimates = std::is_same_v<Family, Plane>;
+    PlaceOrder chosen = best_order(limited(weighs_estimates ? table_.likely_costs() : table_.flown_costs()));
+    if (PlaceOrder other = best_order(limited(table_.likely_costs()), chosen.places);
         !is_order(chosen) || other.places.size() > chosen.places.size()) {
         chosen = std::move(other);
     }

@@ -17,15 +17,16 @@ class DOWNWASH_EXPORT OrderComparisonOf {
         : energy_limit_j(table.estimates().energy_budget_j), table_(table), is_stopped_(std::move(is_stopped)) {}
 
     /// First simulates the legs of nearest_first(), so that no costlier order is chosen. Then it simulates those of the
-    /// order that is best by what is known, until all legs of the best order are simulated. While the budget lasts it
-    /// repeats this with twice the budget per leg; the cheapest flight of each leg counts.
+    /// order that is best by simulated legs and lower bounds, until all legs of the best order are simulated. While the
+    /// budget lasts it repeats this with twice the budget per leg; the cheapest flight of each leg counts.
     /// @return the work of all searches
     [[nodiscard]] SearchRecord compare(const SearchBudget& budget);
 
-    /// The best order by the cheapest simulations of legs and, for the others, estimates.
+    /// The best order by the cheapest simulations of legs; where there is none of these alone, in the plane always,
+    /// with estimates of the others.
     [[nodiscard]] PlaceOrder chosen() const;
 
-    /// The same by the simulations of this pass alone.
+    /// The best order by the simulations of this pass and, for the other legs, estimates.
     [[nodiscard]] PlaceOrder likely() const { return best_order(limited(table_.estimates())); }
 
     double energy_limit_j;  ///< for all legs of an order; callers adjust it, as legs only approximate a flight
