@@ -28,11 +28,10 @@ Vector3 position_m(const SpaceConfiguration& at) {
 }
 
 /// Some configurations that meet a goal and are free; the same for every seed.
-std::vector<SpaceConfiguration> places_at_goal(const SpaceSearchSpace& space, std::size_t number) {
-    constexpr int samples = 4;
+std::vector<SpaceConfiguration> places_at_goal(const SpaceSearchSpace& space, std::size_t number, std::size_t samples) {
     std::vector<SpaceConfiguration> places;
     Random random(number);
-    for (int i = 0; i < samples; ++i) {
+    for (std::size_t i = 0; i < samples; ++i) {
         if (const std::optional<SpaceConfiguration> at = space.sample_goal(random)) {
             places.push_back(*at);
         }
@@ -122,8 +121,10 @@ std::vector<ExpectedLegOf<Space>> expected_legs(const SpaceProblem& problem,
         all_m.insert(all_m.end(), places_m.back().begin(), places_m.back().end());
         places.push_back(std::move(some));
     };
+    constexpr std::size_t most_samples = 4, samples_in_all = 128;
+    const std::size_t samples = std::clamp<std::size_t>(samples_in_all / bounds.size(), 1, most_samples);
     for (std::size_t to = 0; to < bounds.size(); ++to) {
-        add(places_at_goal(bounds[to]->space(), to));
+        add(places_at_goal(bounds[to]->space(), to, samples));
     }
     add({start});
     constexpr double most_cells = 1 << 17, most_in_all = 1 << 22;  // a search through these takes about a second
@@ -131,7 +132,10 @@ std::vector<ExpectedLegOf<Space>> expected_legs(const SpaceProblem& problem,
                     std::min(most_cells, most_in_all / static_cast<double>(places.size())));
 
     std::vector<ExpectedLegOf<Space>> legs((targets + 1) * (targets + 1));
-    for (std::size_t from = 0; from <= targets && !(is_over && is_over()); ++from) {
+    for (std::size_t from = 0; from <= targets; ++from) {
+        if (is_over && is_over()) {
+            return {};  // of legs of which little is known, those would look best of which nothing is
+        }
         const std::size_t begin = from < targets ? from : places.size() - 1;
         const auto corners_m = ways.from(places_m[begin], std::span(places_m).first(bounds.size()));
         for (std::size_t to = 0; to < bounds.size(); ++to) {

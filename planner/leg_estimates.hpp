@@ -52,8 +52,8 @@ struct ExpectedLegOf {
 /// corner. Not a lower bound, but much nearer to what flights take than straight motion in free air.
 /// @param bounds of the way to each place, the one to return to last   @param targets how many of them are no such
 /// place
-/// @return for each begin, the start last, in turn the legs to all places: rows of targets + 1; as far as they had come
-/// when it is over
+/// @return for each begin, the start last, in turn the legs to all places: rows of targets + 1; nothing if it is over
+/// before all are known
 [[nodiscard]] std::vector<ExpectedLegOf<Space>> expected_legs(
     const SpaceProblem& problem, std::span<const std::unique_ptr<LegBoundsOf<Space>>> bounds, std::size_t targets,
     const StopCondition& is_over);

@@ -7,6 +7,7 @@
 
 #include "downwash/planner/family_parts.hpp"
 #include "downwash/planner/goal_search.hpp"
+#include "downwash/planner/stopwatch.hpp"
 
 namespace downwash::planning {
 namespace {
@@ -64,7 +65,11 @@ LegTableOf<Family>::LegTableOf(const Problem& problem, const PlannerModel& model
     legs_.resize((outside + 1) * (outside + 1));
     estimates_.energy_budget_j = problem.energy_budget_j.value_or(std::numeric_limits<double>::infinity());
     at_least_.energy_budget_j = estimates_.energy_budget_j;
-    expected_ = expected_legs(problem, bounds_, outside, [this] { return options_.stop.stop_requested(); });
+    constexpr double most_of_time = 0.2;
+    const double most_s = SearchBudget(problem.planner).part(most_of_time).time_s();
+    expected_ = expected_legs(problem, bounds_, outside, [this, most_s, clock = Stopwatch()] {
+        return options_.stop.stop_requested() || clock.seconds() >= most_s;
+    });
     for (std::size_t from = 0; from <= outside; ++from) {
         bound_legs_from(from);
     }

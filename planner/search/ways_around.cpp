@@ -61,7 +61,7 @@ WaysAround::WaysAround(const SpaceSearchSpace& space, const SpaceConfiguration& 
 /// @param cell from -1 to its count in each direction
 std::size_t WaysAround::number_of(const std::array<int, 3>& cell) const noexcept {
     const auto size = [&](std::size_t i) { return static_cast<std::size_t>(counts_[i]) + 2; };
-    const auto at = [&](std::size_t i) { return static_cast<std::size_t>(cell[i] + 1); };
+    const auto at = [&](std::size_t i) { return static_cast<std::size_t>(cell[i]) + 1; };
     return (at(2) * size(1) + at(1)) * size(0) + at(0);
 }
 
