@@ -54,6 +54,8 @@ class AnyOrder {
         options.on_progress = nullptr;
         options.known_plan.reset();
         options.known_places.clear();
+        options.known_way.clear();
+        options.enough_cost.reset();
         return options;
     }
     [[nodiscard]] bool is_over() const { return left_.is_used_up() || options_.stop.stop_requested(); }
@@ -333,6 +335,8 @@ auto AnyOrder<Family>::options_of_attempt(bool is_first_only, const PlaceOrder& 
     SolveOptions inner = options_;
     inner.known_plan.reset();
     inner.known_places.clear();
+    inner.known_way.clear();
+    inner.enough_cost.reset();
     inner.stop_at_first_solution = is_first_only;
     const bool counts_alone = !has_way() || order.places.size() > best_order_.places.size();
     const double to_beat = counts_alone ? std::numeric_limits<double>::infinity() : cost_when_flown(best_);

@@ -261,6 +261,8 @@ auto GoalSequenceOf<Family>::options_of_part() -> SolveOptions {
     SolveOptions inner = options_;
     inner.known_plan.reset();
     inner.known_places.clear();
+    inner.known_way.clear();
+    inner.enough_cost.reset();
     const std::size_t goal = round_.part_costs.size() + 1;
     const bool is_last = goal == goals_.size();
     // A first plan is far from the cheapest.

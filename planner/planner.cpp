@@ -88,6 +88,8 @@ PlannerOf<Family>::PlannerOf(const Problem& problem, SolveOptions options) : opt
     options_.map = nullptr;
     options_.known_plan.reset();
     options_.known_places.clear();
+    options_.known_way.clear();
+    options_.enough_cost.reset();
     options_.keep_tree = true;
     options_.threads = std::max(1, options_.threads);
 }

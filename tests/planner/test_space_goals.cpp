@@ -383,10 +383,14 @@ TEST_CASE("a sequence in space ends where the way to one goal takes more iterati
                                                           std::make_shared<const SpaceProblemModel>(problem), nullptr);
     planning::SequenceEffortOf<planning::Space> effort;
     effort.patience = planning::SearchBudget(problem.planner).part(0.25);
-    const SpaceSolveOptions options;
+    SpaceSolveOptions options;
+    options.known_way.emplace_back();  // of a single goal alone, as the one below
+    options.enough_cost = 1e9;
     planning::GoalSequenceOf<planning::Space> sequence(problem, model, options, effort, 0);
     std::size_t in_vain = 0;
     while (const auto part = sequence.next()) {
+        CHECK(part->options.known_way.empty());
+        CHECK_FALSE(part->options.enough_cost);
         auto result = a_metre_on(problem, *part->before);
         if (part->before->goals.size() == 1) {
             result.found.status = Status::approximate;  // nearer, not there
